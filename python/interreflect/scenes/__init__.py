@@ -1,0 +1,1 @@
+"""Scenes: the built-in ones, and the values that every scene is made of."""
