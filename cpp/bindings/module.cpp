@@ -1,0 +1,35 @@
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include "bindings/rooms.h"
+#include "bindings/run.h"
+
+namespace py = pybind11;
+using namespace interreflect::bindings;
+
+namespace {
+/// `with threads(n):` work inside uses at most n threads (None or 0: all).
+struct Threads {
+    int limit = 0, before = 0;
+};
+}  // namespace
+
+PYBIND11_MODULE(_core, m) {
+    m.doc() = "The core of Interreflect: stages on plain data.";
+    m.attr("stages") = py::dict();
+    m.def(
+        "_rebuild", [](const py::object& cls, const py::dict& knobs) { return cls(**knobs); },
+        "Makes a technique again from its knobs (pickle).");
+    m.attr("build_info") = py::dict(py::arg("version") = INTERREFLECT_VERSION, py::arg("commit") = INTERREFLECT_COMMIT,
+                                    py::arg("compiler") = "g++ " __VERSION__, py::arg("flags") = INTERREFLECT_FLAGS);
+    py::class_<Threads>(m, "Threads", "Context manager: work inside uses at most `limit` threads; None: all.")
+        .def(py::init([](const std::optional<int>& limit) {
+                 if (limit && *limit < 1) throw py::value_error("threads must be at least 1, got " + std::to_string(*limit));
+                 return Threads{limit.value_or(0)};
+             }),
+             py::arg("limit") = py::none())
+        .def("__enter__", [](Threads& self) { self.before = thread_limit(), thread_limit() = self.limit; })
+        .def("__exit__", [](Threads& self, const py::args&) { thread_limit() = self.before; });
+    bind_data(m);
+    bind_visibility(m);
+}

@@ -1,0 +1,54 @@
+#include "visibility/surface.h"
+
+namespace interreflect {
+
+HitGeometry hit_geometry(const Geometry& geometry, std::uint32_t instance, std::uint32_t triangle, float u, float v) {
+    const auto& arrays = *geometry.arrays;
+    const uvec3 t = arrays.triangles[triangle];
+    const float w = 1.0f - u - v;
+    HitGeometry at;
+    const vec3 a = arrays.positions[t.x], b = arrays.positions[t.y], c = arrays.positions[t.z];
+    at.position = a * w + b * u + c * v;
+    vec3 geometric = glm::cross(b - a, c - a);
+    vec3 shading = arrays.normals[t.x] * w + arrays.normals[t.y] * u + arrays.normals[t.z] * v;
+    at.texcoord = arrays.texcoords[t.x] * w + arrays.texcoords[t.y] * u + arrays.texcoords[t.z] * v;
+    const Instance& placed = geometry.instances[instance];
+    at.offset = placed.identity ? self_hit_offset(a, b, c) : self_hit_offset(geometry, instance, triangle);
+    if (!placed.identity) {
+        at.position = placed.world_from_local * vec4(at.position, 1);
+        geometric = placed.normal_from_local * geometric;
+        shading = placed.normal_from_local * shading;
+    }
+    at.geometric_normal = glm::normalize(geometric);
+    const float length = glm::length(shading);
+    at.normal = length > 0.0f ? shading / length : at.geometric_normal;
+    return at;
+}
+
+SurfacePoint surface_at(const Scene& scene, const Hit& hit, const vec3& direction, float footprint) {
+    const HitGeometry at = hit_geometry(*scene.geometry, hit.instance, hit.triangle, hit.u, hit.v);
+    SurfacePoint point;
+    point.position = at.position;
+    point.texcoord = at.texcoord;
+    point.offset = at.offset;
+    point.material = scene.material_of(hit.triangle);
+    const Material& material = scene.materials[point.material];
+    point.front = glm::dot(at.geometric_normal, direction) < 0.0f;
+    point.geometric_normal = point.front ? at.geometric_normal : -at.geometric_normal;
+    point.normal = glm::dot(at.normal, point.geometric_normal) < 0.0f ? -at.normal : at.normal;
+    point.alpha = material.alpha;
+    point.exponent = material.exponent;
+    point.lobe = material.lobe;
+    if (point.front || material.two_sided) {
+        point.albedo = material.albedo;
+        if (material.albedo_map >= 0) point.albedo *= scene.textures[material.albedo_map]->filtered(point.texcoord, footprint);
+        point.specular = material.specular;
+    }
+    if (point.front && material.emits()) {
+        point.emission = material.emission;
+        if (material.emission_map >= 0) point.emission *= scene.textures[material.emission_map]->bilinear(point.texcoord);
+    }
+    return point;
+}
+
+}  // namespace interreflect
