@@ -1,0 +1,110 @@
+"""The machine card: what ran, on what. Every record carries it, so that times and pictures can be told apart later."""
+
+from __future__ import annotations
+
+import dataclasses
+import os
+import platform
+import re
+import subprocess
+from functools import cache
+from html import escape
+from importlib import metadata
+from pathlib import Path
+from typing import Any
+
+# Libraries whose version can change a picture or a metric.
+LIBRARIES = ("numpy", "OpenImageIO", "trimesh", "pygltflib", "flip-evaluator", "scikit-image", "moocore", "pyoidn")
+UNKNOWN = "unknown"
+
+
+@dataclasses.dataclass(frozen=True)
+class About:
+    """Machine, build and versions. What cannot be found out is "unknown", never guessed."""
+
+    version: str
+    commit: str
+    processor: str
+    threads: int
+    memory_bytes: int
+    system: str
+    compiler: str
+    build: dict[str, Any]  # what the compiled core says about itself, as it says it
+    python: str
+    libraries: dict[str, str]  # installed ones only
+
+    def asdict(self) -> dict[str, Any]:
+        return dataclasses.asdict(self)
+
+    def rows(self) -> list[tuple[str, str]]:
+        """The card as (name, value) pairs for people."""
+        build = [(name.replace("_", " "), str(value)) for name, value in self.build.items() if name not in ("compiler", "commit")]
+        return [
+            ("interreflect", f"{self.version}, commit {self.commit}"),
+            ("processor", f"{self.processor}, {self.threads} threads, {self.memory_bytes / 2**30:.1f} GiB"),
+            ("system", self.system),
+            ("compiler", self.compiler),
+            *build,
+            ("Python", self.python),
+            ("libraries", ", ".join(f"{name} {version}" for name, version in self.libraries.items())),
+        ]
+
+    def __str__(self) -> str:
+        return "\n".join(f"{name:14} {value}" for name, value in self.rows())
+
+    def _repr_html_(self) -> str:
+        cells = "".join(f"<tr><th>{escape(name)}</th><td>{escape(value)}</td></tr>" for name, value in self.rows())
+        return f"<table>{cells}</table>"
+
+
+@cache
+def about() -> About:
+    """What this process runs on; asked once a process."""
+    build = _build_info()
+    return About(
+        version=_version("interreflect") or str(build.get("version", UNKNOWN)),
+        commit=str(build.get("commit") or _commit()),
+        processor=_processor(),
+        threads=len(os.sched_getaffinity(0)),
+        memory_bytes=os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES"),
+        system=platform.platform(),
+        compiler=str(build.get("compiler", UNKNOWN)),
+        build=build,
+        python=platform.python_version(),
+        libraries={name: version for name in LIBRARIES if (version := _version(name))},
+    )
+
+
+def _build_info() -> dict[str, Any]:
+    try:
+        from interreflect import _core
+    except ImportError:
+        return {}
+    info = getattr(_core, "build_info", {})
+    return dict(info() if callable(info) else info)
+
+
+def _version(distribution: str) -> str | None:
+    try:
+        return metadata.version(distribution)
+    except metadata.PackageNotFoundError:
+        return None
+
+
+def _processor() -> str:
+    cpuinfo = Path("/proc/cpuinfo")
+    found = re.search(r"^model name\s*:\s*(.+)$", cpuinfo.read_text(), re.MULTILINE) if cpuinfo.exists() else None
+    return found.group(1).strip() if found else platform.processor() or platform.machine() or UNKNOWN
+
+
+def _commit() -> str:
+    """The checked-out commit, with "-dirty" if tracked files differ; "unknown" outside a checkout."""
+    folder = Path(__file__).resolve().parent
+    try:
+        done = subprocess.run(
+            ["git", "-C", str(folder), "describe", "--always", "--dirty", "--abbrev=12", "--exclude=*"],
+            capture_output=True, text=True, timeout=5, check=False,
+        )  # fmt: skip
+    except (OSError, subprocess.TimeoutExpired):
+        return UNKNOWN
+    return done.stdout.strip() if done.returncode == 0 else UNKNOWN

@@ -1,0 +1,1 @@
+"""Studies: scenes x methods x parameter values, measured against the truth, kept as records."""

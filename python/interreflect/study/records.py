@@ -1,0 +1,172 @@
+"""Records: the measured cells of a study, and their table."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from interreflect.study.interface import Image
+
+OK, FAILED, NOT_FINITE = "ok", "failed", "not finite"
+ALL_BOUNCES = "all"
+METRICS = (
+    "relmse", "trimmed_relmse", "energy_ratio", "flip", "ssim", "hue_shift",
+    "indirect_relmse", "indirect_trimmed_relmse", "indirect_energy_ratio",
+)  # fmt: skip
+FIXED = (
+    "scene", "camera", "bounces", "method", "seed", "status", "failure",
+    "milliseconds", "milliseconds_p95", "precompute_milliseconds", *METRICS, "noise", "indirect_noise",
+    "width", "height", "threads", "repeats", "truth_spp", "scene_hash", "processor", "compiler", "commit", "warnings", "key",
+)  # fmt: skip
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Record:
+    """One measured cell. Numbers that were not measured are NaN; `status` says why, `failure` in which words."""
+
+    key: str
+    scene: str
+    scene_hash: str
+    camera: str
+    camera_values: Mapping[str, Any]
+    method: str
+    knobs: Mapping[str, Any]
+    seed: int
+    size: tuple[int, int]
+    bounces: int | None
+    threads: int
+    machine: Mapping[str, Any]
+    status: str = OK
+    failure: str = ""
+    repeats: int = 0
+    milliseconds: float = math.nan
+    milliseconds_p95: float = math.nan
+    precompute_milliseconds: float = math.nan
+    metrics: Mapping[str, float] = dataclasses.field(default_factory=dict)
+    stages: Mapping[str, Mapping[str, Any]] = dataclasses.field(default_factory=dict)
+    noise: float = math.nan
+    indirect_noise: float = math.nan
+    truth: str = ""
+    truth_spp: int = 0
+    warnings: tuple[str, ...] = ()
+    images: bool = False
+
+    def as_content(self) -> dict[str, Any]:
+        """What is written to the record's file: JSON without numbers that JSON lacks."""
+        return {field.name: _portable(getattr(self, field.name)) for field in dataclasses.fields(self)}
+
+    @staticmethod
+    def from_content(content: Mapping[str, Any]) -> Record:
+        """The inverse of `as_content`."""
+        values = {name: _restored(value) for name, value in content.items()}
+        values["size"], values["warnings"] = tuple(values["size"]), tuple(values["warnings"])
+        return Record(**values)
+
+    @property
+    def configuration(self) -> str:
+        """The method and its knobs in one line."""
+        return f"{self.method}({', '.join(f'{name}={value}' for name, value in self.knobs.items())})"
+
+    def row(self) -> dict[str, Any]:
+        """The record as a row of the table."""
+        fixed = {name: getattr(self, name) for name in FIXED if hasattr(self, name)}
+        fixed |= {"width": self.size[0], "height": self.size[1], "bounces": ALL_BOUNCES if self.bounces is None else self.bounces}
+        fixed |= {name: self.machine.get(name, "") for name in ("processor", "compiler", "commit")}
+        fixed |= {name: self.metrics.get(name, math.nan) for name in METRICS}
+        fixed["warnings"] = "; ".join(self.warnings)
+        knobs = {knob_column(name): value for name, value in self.knobs.items()}
+        measured: dict[str, Any] = {}
+        for name, stage in self.stages.items():
+            measured[f"stage.{name}.milliseconds"] = stage["milliseconds"]
+            measured[f"stage.{name}.bytes"] = stage["bytes"]
+            measured |= {f"stage.{name}.{key}": count for key, count in stage["counts"].items()}
+        return {name: fixed[name] for name in FIXED} | knobs | measured
+
+
+def knob_column(knob: str) -> str:
+    """A knob's column: its path; with "method." before it where a measured column has that name."""
+    return f"method.{knob}" if knob in FIXED or knob.startswith("stage.") else knob
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Records(Sequence[Record]):
+    """The records of a study in the order of its cells. `missing` cells are not measured yet; `damaged` files were left out."""
+
+    study: str
+    records: tuple[Record, ...]
+    folder: Path
+    missing: int = 0
+    damaged: tuple[str, ...] = ()
+
+    @cached_property
+    def table(self) -> pd.DataFrame:
+        """A row per cell (scene x camera x method x seed); columns: what was measured, knob paths, `stage.<name>.<what>`."""
+        import pandas as pd
+
+        rows = [record.row() for record in self.records]
+        columns = dict.fromkeys([*FIXED, *(name for row in rows for name in row)])
+        return pd.DataFrame(rows, columns=list(columns))
+
+    def knob_columns(self) -> list[str]:
+        """The table's columns that are knobs."""
+        return list(dict.fromkeys(knob_column(name) for record in self.records for name in record.knobs))
+
+    def images(self, record: Record) -> tuple[Image, Image]:
+        """The image and the indirect light of a record. FileNotFoundError where the study kept none."""
+        return _load_pair(self.folder / "images" / f"{record.key}.npz")
+
+    def truth(self, record: Record) -> tuple[Image, Image]:
+        """The image and the indirect light of the truth that a record was compared with."""
+        return _load_pair(self.folder / "truths" / f"{record.truth}.npz")
+
+    def __getitem__(self, index: Any) -> Any:
+        return self.records[index]
+
+    def __len__(self) -> int:
+        return len(self.records)
+
+    def __iter__(self) -> Iterator[Record]:
+        return iter(self.records)
+
+    def __repr__(self) -> str:
+        failed = sum(record.status != OK for record in self.records)
+        return f"<Records {self.study!r}: {len(self.records)} cells, {failed} failed, {self.missing} missing>"
+
+    def _repr_html_(self) -> str:
+        return str(self.table.to_html(max_rows=60, float_format=lambda number: f"{number:.4g}"))
+
+
+def _load_pair(path: Path) -> tuple[Image, Image]:
+    with np.load(path, allow_pickle=False) as kept:
+        return kept["image"], kept["indirect"]
+
+
+def _portable(value: Any) -> Any:
+    if isinstance(value, float) and not math.isfinite(value):
+        return {"number": repr(value)}
+    if isinstance(value, Mapping):
+        return {str(key): _portable(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_portable(item) for item in value]
+    if isinstance(value, np.generic):
+        return _portable(value.item())
+    return value if value is None or isinstance(value, bool | int | float | str) else str(value)
+
+
+def _restored(value: Any) -> Any:
+    if isinstance(value, dict):
+        if value.keys() == {"number"}:
+            return float(value["number"])
+        return {key: _restored(item) for key, item in value.items()}
+    if isinstance(value, list):
+        return [_restored(item) for item in value]
+    return value

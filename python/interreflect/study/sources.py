@@ -1,0 +1,32 @@
+"""A digest of the code that makes a picture, so that repaired code makes new truths and new records."""
+
+from __future__ import annotations
+
+import hashlib
+import inspect
+from functools import cache
+from pathlib import Path
+
+PACKAGE = Path(__file__).resolve().parent.parent
+# What only reads records, or whose effect is in the scene's hash already.
+WITHOUT_EFFECT = ("about.py", "cache.py", "charts.py", "cli.py", "metrics.py", "scenes", "study")
+
+
+@cache
+def source_digest(method: type, *others: Path) -> str:
+    """blake2b of the compiled core, the package's rendering sources, the files that define `method` and `others`."""
+    hasher = hashlib.blake2b(digest_size=16)
+    for path in sorted({*_package_files(), *_defining_files(method), *others}):
+        hasher.update(path.name.encode() + b"\0" + hashlib.blake2b(path.read_bytes()).digest())
+    return hasher.hexdigest()
+
+
+def _package_files() -> set[Path]:
+    python = {path for path in PACKAGE.rglob("*.py") if path.relative_to(PACKAGE).parts[0] not in WITHOUT_EFFECT}
+    return python | set(PACKAGE.glob("_core*.so"))
+
+
+def _defining_files(method: type) -> set[Path]:
+    modules = [inspect.getmodule(base) for base in method.__mro__ if base is not object]
+    files = [getattr(module, "__file__", None) for module in modules]
+    return {Path(file).resolve() for file in files if file and Path(file).exists()}

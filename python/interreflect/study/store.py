@@ -1,0 +1,109 @@
+"""The folder of a study: one file per cell, its pictures, the truths, and the list of cells.
+
+    study.json         name and cells of the study that ran here last, in order
+    cells/<key>.json   a record, with format version and checksum
+    images/<key>.npz   image and indirect light of a cell (the archive checks itself when read)
+    truths/<key>.npz   the truths of the cells
+
+Cells are keyed by everything that determines them, so a changed study finds again what it shares with an earlier one.
+"""
+
+from __future__ import annotations
+
+import zipfile
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from interreflect.study.files import DamagedFile, read_checked, remove_parts, replacing, set_aside, write_checked
+from interreflect.study.interface import Frame
+from interreflect.study.records import Record, Records
+from interreflect.study.reference import Truth
+
+FORMAT = 1
+
+
+class Store:
+    """Where the cells of a study live."""
+
+    def __init__(self, folder: str | Path) -> None:
+        self.folder = Path(folder)
+
+    def begin(self, name: str, cells: list[dict[str, str]]) -> None:
+        """List the study's cells, so that a killed study can be read; clear away what killed writers left."""
+        self.folder.mkdir(parents=True, exist_ok=True)
+        remove_parts(self.folder)
+        write_checked(self.folder / "study.json", {"name": name, "cells": cells}, FORMAT)
+
+    def read(self, key: str) -> Record | None:
+        """The record of a cell; None where it is absent, or damaged: then it is set aside."""
+        path = self._cell(key)
+        try:
+            record = Record.from_content(read_checked(path, FORMAT))
+        except FileNotFoundError:
+            return None
+        except (DamagedFile, TypeError, KeyError):
+            set_aside(path)
+            return None
+        if record.images and not (self._whole(self._image(key)) and self._whole(self._truth(record.truth))):
+            path.unlink()
+            return None
+        return record
+
+    def write(self, record: Record, frame: Frame | None, truth: Truth | None) -> None:
+        """Keep a cell. The pictures go first: the record says that they are there."""
+        if record.images and frame is not None and truth is not None:
+            # Unsynced: an archive torn by a power cut fails its own check, and the cell is measured again.
+            with replacing(self._image(record.key), sync=False) as file:
+                np.savez(file, allow_pickle=False, image=frame.image, indirect=frame.indirect)
+            if not self._truth(truth.key).exists():
+                with replacing(self._truth(truth.key), sync=False) as file:
+                    np.savez(file, allow_pickle=False, image=truth.image, indirect=truth.indirect)
+        write_checked(self._cell(record.key), record.as_content(), FORMAT)
+
+    def load(self) -> Records:
+        """The records of the study that ran here last. FileNotFoundError where none did."""
+        listed = self.folder / "study.json"
+        if not listed.exists():
+            raise FileNotFoundError(f"{self.folder}: no study (study.json is not there)")
+        study = read_checked(listed, FORMAT)
+        records, damaged, missing = [], [], 0
+        for cell in study["cells"]:
+            path = self._cell(cell["key"])
+            try:
+                content: dict[str, Any] = read_checked(path, FORMAT)
+                records.append(Record.from_content(content | {"scene": cell["scene"], "camera": cell["camera"]}))
+            except FileNotFoundError:
+                missing += 1
+            except DamagedFile as error:
+                damaged.append(str(error))
+        return Records(study["name"], tuple(records), self.folder, missing, tuple(damaged))
+
+    def _cell(self, key: str) -> Path:
+        return self.folder / "cells" / f"{key}.json"
+
+    def _image(self, key: str) -> Path:
+        return self.folder / "images" / f"{key}.npz"
+
+    def _truth(self, key: str) -> Path:
+        return self.folder / "truths" / f"{key}.npz"
+
+    @staticmethod
+    def _whole(path: Path) -> bool:
+        """Is this archive there and undamaged? A damaged one is set aside."""
+        try:
+            with zipfile.ZipFile(path) as archive:
+                if archive.testzip() is None:
+                    return True
+        except FileNotFoundError:
+            return False
+        except (zipfile.BadZipFile, EOFError, OSError):
+            pass
+        set_aside(path)
+        return False
+
+
+def load_records(folder: str | Path) -> Records:
+    """The records in a study's folder, without rendering. FileNotFoundError where no study ran."""
+    return Store(folder).load()
