@@ -1,1 +1,47 @@
-"""Scenes: the built-in ones, and the values that every scene is made of."""
+"""Scenes: the built-in ones by name, made when called; and the values that every scene is made of."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+
+    from interreflect.scenes.builtin.closed_forms import closed_form as closed_form
+    from interreflect.scenes.builtin.cornell_box import cornell_box as cornell_box
+    from interreflect.scenes.builtin.corridors import corridors as corridors
+    from interreflect.scenes.builtin.disk_above_point import disk_above_point as disk_above_point
+    from interreflect.scenes.builtin.furnace import furnace as furnace
+    from interreflect.scenes.builtin.glossy_plates import glossy_plates as glossy_plates
+    from interreflect.scenes.builtin.grille import grille as grille
+    from interreflect.scenes.builtin.integrating_sphere import integrating_sphere as integrating_sphere
+    from interreflect.scenes.builtin.squares import corner as corner
+    from interreflect.scenes.builtin.squares import facing_squares as facing_squares
+    from interreflect.scenes.builtin.textured_light_box import textured_light_box as textured_light_box
+    from interreflect.scenes.builtin.thin_wall import thin_wall as thin_wall
+
+_MODULES = {
+    "closed_form": "closed_forms",
+    "cornell_box": "cornell_box",
+    "corner": "squares",
+    "corridors": "corridors",
+    "disk_above_point": "disk_above_point",
+    "facing_squares": "squares",
+    "furnace": "furnace",
+    "glossy_plates": "glossy_plates",
+    "grille": "grille",
+    "integrating_sphere": "integrating_sphere",
+    "textured_light_box": "textured_light_box",
+    "thin_wall": "thin_wall",
+}
+__all__ = list(_MODULES)
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _MODULES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(f"{__name__}.builtin.{_MODULES[name]}"), name)
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

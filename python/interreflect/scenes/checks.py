@@ -177,3 +177,10 @@ def rigid_matrix(argument: str, value: ArrayLike) -> NDArray[np.float64]:
     if float(np.abs(axes @ axes.T - np.eye(3)).max()) > 1e-5 or float(np.linalg.det(axes)) < 0:
         raise ValueError(f"{argument} must be rigid (a rotation and a translation), got {shorten(array.tolist())}")
     return array
+
+
+def whole(argument: str, value: Any, low: int, high: int) -> int:
+    """A whole number in [low, high]."""
+    if isinstance(value, (int, np.integer)) and not isinstance(value, bool) and low <= value <= high:
+        return int(value)
+    raise ValueError(f"{argument} must be a whole number in [{low}, {high}], got {shorten(value)}")

@@ -1,0 +1,60 @@
+"""Glossy plates under lamps of different size: from sharp mirror images to wide highlights [after Veach 1997, 9.2]."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from interreflect.scenes.builtin.shapes import Shape, box, join, mesh, quad, sphere, triple
+from interreflect.scenes.checks import choice, number
+from interreflect.scenes.values import Camera, Material, Mesh, Scene
+
+ROUGHNESS = (0.1, 0.2, 0.32, 0.5)  # front to back
+RADII = (0.04, 0.12, 0.3, 0.75)  # left to right
+TINTS = ((1.0, 0.75, 0.5), (0.65, 1.0, 0.6), (0.6, 0.75, 1.0), (1.0, 0.65, 0.9))
+EYE = np.array([0.0, 2.2, 9.0])
+LAMPS = [np.array([x, 3.9, -3.2]) for x in (-3.6, -1.3, 1.2, 3.9)]
+
+
+def glossy_plates(lobe: str = "ggx", specular: float = 0.6) -> Scene:
+    """Four plates, each rougher than the one before it, that mirror four round lamps of equal flux into the camera "front".
+
+    lobe: "ggx", "phong" or "blinn-phong" (exponent 2 / alpha^2 - 2, to match the roughness).
+    specular: reflectance of the lobe, in [0, 0.9]. ValueError names the knob, its bound and its value.
+    """
+    choice("glossy_plates.lobe", lobe, ("ggx", "phong", "blinn-phong"))
+    s = number("glossy_plates.specular", specular, 0, 0.9)
+    meshes = [_stage(), *(_plate(k, _metal(k, lobe, s)) for k in range(len(ROUGHNESS))), *map(_lamp, range(len(RADII)))]
+    camera = Camera(position=triple(EYE), target=(0, 1.35, 0), fov_x=52)
+    return Scene(name=f"glossy_plates(lobe={lobe!r}, specular={s:g})", meshes=meshes, cameras={"front": camera})
+
+
+def _stage() -> Mesh:
+    floor = quad((-9, 0, 12), (18, 0, 0), (0, 0, -17))
+    back = quad((-9, 0, -5), (18, 0, 0), (0, 8, 0))
+    return mesh(join([floor, back]), Material(name="stage", albedo=(0.35, 0.35, 0.35)))
+
+
+def _metal(k: int, lobe: str, specular: float) -> Material:
+    plate = Material(name=f"plate {k + 1}", albedo=(0.07, 0.07, 0.07), specular=(specular,) * 3, roughness=ROUGHNESS[k])
+    return plate if lobe == "ggx" else plate.replace(lobe=lobe, exponent=2 / ROUGHNESS[k] ** 4 - 2)
+
+
+def _plate(k: int, material: Material) -> Mesh:
+    """A slab that is tilted about x so that the camera sees the row of lamps in its middle."""
+    centre = np.array([0, 0.35 + 0.5 * k, 3.6 - 1.6 * k])
+    lamp = np.array([0, LAMPS[0][1], LAMPS[0][2]])
+    normal = _unit(_unit(EYE - centre) + _unit(lamp - centre))
+    slab = box((-4.2, -0.1, -0.45), (4.2, 0, 0.45))
+    axes = np.stack([(1.0, 0.0, 0.0), normal, np.cross((1.0, 0.0, 0.0), normal)])
+    return mesh(Shape(slab.positions @ axes + centre, slab.triangles), material)
+
+
+def _lamp(k: int) -> Mesh:
+    radiance = 2.0 / (4 * np.pi**2 * RADII[k] ** 2) * 10 * np.array(TINTS[k])
+    glow = Material(name=f"lamp {k + 1}", albedo=(0, 0, 0), emission=triple(radiance))
+    return mesh(sphere(RADII[k], centre=LAMPS[k], segments=24), glow)
+
+
+def _unit(v: NDArray[np.float64]) -> NDArray[np.float64]:
+    return np.asarray(v / np.linalg.norm(v))
