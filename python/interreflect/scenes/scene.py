@@ -20,6 +20,7 @@ from interreflect.scenes.mesh import IDENTITY, Mesh
 
 if TYPE_CHECKING:
     from interreflect import _core
+    from interreflect.scenes.compile import Compiled
 
 WORLD = "world"
 
@@ -147,14 +148,30 @@ class Scene(Content):
         )  # fmt: skip
 
     @cached_property
-    def core(self) -> _core.Scene:
-        """The compiled core's scene; scenes that differ in lights or cameras only share its hierarchy and textures."""
+    def _compiled(self) -> Compiled:
         from interreflect.scenes.compile import compile_scene
 
         return compile_scene(self)
 
+    @property
+    def core(self) -> _core.Scene:
+        """The compiled core's scene; scenes that differ in lights, cameras or poses only share its hierarchies and textures."""
+        return self._compiled.core
+
+    @property
+    def core_milliseconds(self) -> float:
+        """Wall time of building the ray hierarchy and texture levels, also where another scene built and shares them."""
+        return self._compiled.milliseconds
+
+    @cached_property
+    def still_hash(self) -> str:
+        """Digest of what stays when bodies move and lights or cameras change: geometry and materials."""
+        from interreflect.scenes.compile import still_digest
+
+        return still_digest(self)
+
     def __getstate__(self) -> dict[str, Any]:
-        state = {key: value for key, value in self.__dict__.items() if key not in ("core", "bounds")}
+        state = {key: value for key, value in self.__dict__.items() if key not in ("_compiled", "bounds")}
         return state | {"cameras": dict(self.cameras), "bodies": dict(self.bodies)}
 
     def __setstate__(self, state: dict[str, Any]) -> None:

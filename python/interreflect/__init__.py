@@ -1,0 +1,105 @@
+"""Interreflect: a laboratory for real-time global illumination.
+
+Scenes go in; methods, composed of interchangeable stages, make pictures; each picture is measured against a path-traced truth; studies chart
+speed against accuracy. Names are loaded when first used, so that `import interreflect` is quick.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+__version__ = "0.1.0"
+
+# Public name -> the module that holds it ("module" alone: the module itself).
+_HOMES = {
+    **dict.fromkeys(("Scene", "Mesh", "Material", "Texture", "Camera"), "scenes.values"),
+    **dict.fromkeys(("PointLight", "SpotLight", "DirectionalLight", "EnvironmentLight"), "scenes.values"),
+    "load_scene": "scenes.load",
+    "SceneError": "errors",
+    **dict.fromkeys(("Frame",), "frame"),
+    **dict.fromkeys(("Profile", "Stage"), "profile"),
+    **dict.fromkeys(("trace_gbuffer", "voxelize", "light_voxels", "prefilter", "march", "glossy", "shadow", "sky", "shade"), "stages"),
+    **dict.fromkeys(("techniques", "exact"), "stages"),
+    **dict.fromkeys(("Study", "sweep"), "study.study"),
+    "run": "study.run",
+    **dict.fromkeys(("Records", "load_records"), "study.records"),
+    **dict.fromkeys(("Reference", "reference"), "study.reference"),
+    **dict.fromkeys(("pareto", "cheapest", "best", "equal_time", "equal_error"), "study.pareto"),
+    "report": "study.report",
+    "about": "about",
+}
+_MODULES = ("methods", "scenes", "metrics", "charts")
+
+
+def _is_technique(name: str, value: Any) -> bool:
+    return isinstance(value, type) and hasattr(value, "description") and value.__name__ == name
+
+
+def __getattr__(name: str) -> Any:
+    if name in _MODULES:
+        return import_module(f"interreflect.{name}")
+    if name in _HOMES:
+        module = import_module(f"interreflect.{_HOMES[name]}")
+        value = getattr(module, name)
+        globals()[name] = value  # a submodule of the same name (study.run, reference, ...) must not shadow it
+        return value
+    if not name.startswith("_"):
+        core = import_module("interreflect._core")
+        value = getattr(core, name, None)
+        if _is_technique(name, value):
+            return value
+    raise AttributeError(f"module 'interreflect' has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    core = import_module("interreflect._core")
+    techniques = [name for name in dir(core) if _is_technique(name, getattr(core, name))]
+    return sorted({*_HOMES, *_MODULES, *techniques, "__version__"})
+
+
+if TYPE_CHECKING:
+    from interreflect import charts as charts
+    from interreflect import methods as methods
+    from interreflect import metrics as metrics
+    from interreflect import scenes as scenes
+    from interreflect.about import about as about
+    from interreflect.errors import SceneError as SceneError
+    from interreflect.frame import Frame as Frame
+    from interreflect.profile import Profile as Profile
+    from interreflect.profile import Stage as Stage
+    from interreflect.scenes.load import load_scene as load_scene
+    from interreflect.scenes.values import Camera as Camera
+    from interreflect.scenes.values import DirectionalLight as DirectionalLight
+    from interreflect.scenes.values import EnvironmentLight as EnvironmentLight
+    from interreflect.scenes.values import Material as Material
+    from interreflect.scenes.values import Mesh as Mesh
+    from interreflect.scenes.values import PointLight as PointLight
+    from interreflect.scenes.values import Scene as Scene
+    from interreflect.scenes.values import SpotLight as SpotLight
+    from interreflect.scenes.values import Texture as Texture
+    from interreflect._core import Grid as Grid
+    from interreflect.stages import exact as exact
+    from interreflect.stages import glossy as glossy
+    from interreflect.stages import light_voxels as light_voxels
+    from interreflect.stages import march as march
+    from interreflect.stages import prefilter as prefilter
+    from interreflect.stages import shade as shade
+    from interreflect.stages import shadow as shadow
+    from interreflect.stages import sky as sky
+    from interreflect.stages import techniques as techniques
+    from interreflect.stages import trace_gbuffer as trace_gbuffer
+    from interreflect.stages import voxelize as voxelize
+    from interreflect.study.pareto import best as best
+    from interreflect.study.pareto import cheapest as cheapest
+    from interreflect.study.pareto import equal_error as equal_error
+    from interreflect.study.pareto import equal_time as equal_time
+    from interreflect.study.pareto import pareto as pareto
+    from interreflect.study.records import Records as Records
+    from interreflect.study.records import load_records as load_records
+    from interreflect.study.reference import Reference as Reference
+    from interreflect.study.reference import reference as reference
+    from interreflect.study.report import report as report
+    from interreflect.study.run import run as run
+    from interreflect.study.study import Study as Study
+    from interreflect.study.study import sweep as sweep

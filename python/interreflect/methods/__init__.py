@@ -1,0 +1,30 @@
+"""Methods: compositions of stages that turn a scene and a camera into a frame. One file each, readable as the paper's pipeline figure."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+_HOMES = {
+    "ConstantAmbient": "constant_ambient",
+    "PathTracing": "path_tracing",
+    "PathTracingDenoised": "path_tracing_denoised",
+    "VoxelConeTracing": "voxel_cone_tracing",
+}
+
+
+def __getattr__(name: str) -> Any:
+    if name in _HOMES:
+        return getattr(import_module(f"interreflect.methods.{_HOMES[name]}"), name)
+    raise AttributeError(f"there is no method {name!r}; the methods are {', '.join(_HOMES)}")
+
+
+def __dir__() -> list[str]:
+    return sorted(_HOMES)
+
+
+if TYPE_CHECKING:
+    from interreflect.methods.constant_ambient import ConstantAmbient as ConstantAmbient
+    from interreflect.methods.path_tracing import PathTracing as PathTracing
+    from interreflect.methods.path_tracing_denoised import PathTracingDenoised as PathTracingDenoised
+    from interreflect.methods.voxel_cone_tracing import VoxelConeTracing as VoxelConeTracing

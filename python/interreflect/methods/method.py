@@ -1,0 +1,111 @@
+"""What every method is: a frozen value of techniques and knobs that prepares a scene and renders frames of it."""
+
+from __future__ import annotations
+
+import dataclasses
+import functools
+import re
+import time
+from abc import ABC, abstractmethod
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, ClassVar, TypeVar, dataclass_transform
+
+from interreflect import _core
+from interreflect.frame import Frame, Image
+from interreflect.methods.knobs import check_knob, flatten, is_technique, knob, replace_in, stage, unknown
+from interreflect.methods.prepared import Prepared, View
+from interreflect.profile import Profile
+from interreflect.scenes.camera import Camera
+from interreflect.scenes.scene import Scene
+
+Self = TypeVar("Self", bound="Method")
+
+
+@dataclass_transform(kw_only_default=True, frozen_default=True, field_specifiers=(knob, stage))
+def method(cls: type[Self]) -> type[Self]:
+    """Makes a class a method: a frozen, keyword-only dataclass whose unknown knobs are a TypeError with the nearest name."""
+    made = dataclasses.dataclass(frozen=True, kw_only=True)(cls)
+    plain = made.__init__
+    names = [field.name for field in dataclasses.fields(made)]
+
+    @functools.wraps(plain)
+    def __init__(self: Self, *wrong: Any, **given: Any) -> None:
+        if wrong:
+            raise TypeError(f"{cls.__name__} takes its knobs by keyword")
+        for name in given:
+            if name not in names:
+                raise unknown(cls.__name__, name, names)
+        plain(self, **given)
+
+    made.__init__ = __init__  # type: ignore[method-assign]
+    return made
+
+
+class Method(ABC):
+    """A composition of stages. Subclasses are made by `@method`, fields are knobs; `bounces` is the transport they aim at."""
+
+    bounces: int | None  # most indirect bounces that the method's picture holds; None: all. A field or a class attribute
+    presets: ClassVar[tuple[str, ...]] = ()
+
+    def __post_init__(self) -> None:
+        for field in dataclasses.fields(self):  # type: ignore[arg-type]
+            check_knob(type(self).__name__, field, getattr(self, field.name))
+
+    @property
+    def name(self) -> str:
+        """The class's name in kebab case."""
+        return re.sub(r"(?<!^)(?=[A-Z])", "-", type(self).__name__).lower()
+
+    def knobs(self) -> dict[str, Any]:
+        """Dotted path -> value of every knob; a technique's own path holds its name."""
+        return dict(flatten({field.name: getattr(self, field.name) for field in dataclasses.fields(self)}))  # type: ignore[arg-type]
+
+    def replace(self: Self, changes: Mapping[str, Any] | None = None, **more: Any) -> Self:
+        """The same method with knobs replaced by dotted path. TypeError for an unknown path, with the nearest one."""
+        changed: Self = self
+        for path, value in {**(changes or {}), **more}.items():
+            head, _, rest = path.partition(".")
+            if head not in {field.name for field in dataclasses.fields(self)}:  # type: ignore[arg-type]
+                raise unknown(type(self).__name__, path, list(self.knobs()))
+            if rest:
+                value = replace_in(getattr(changed, head), rest, value, type(self).__name__, path)
+            changed = dataclasses.replace(changed, **{head: value})  # type: ignore[type-var]
+        return changed
+
+    def prepare(self, scene: Scene, threads: int | None = None) -> Prepared:
+        """Builds what does not belong to a frame: ray hierarchy, texture levels, and what the method precomputes."""
+        with _core.Threads(threads):
+            hierarchy = scene.core_milliseconds
+            start = time.perf_counter()
+            state = self.precompute(scene)
+            spent = 1e3 * (time.perf_counter() - start)
+        return Prepared(method=self, scene=scene, state=state, precompute_milliseconds=hierarchy + spent, threads=threads)
+
+    def load(self, path: str | Path, scene: Scene) -> Prepared:
+        """What `Prepared.save` wrote. ValueError where it was made from other geometry, materials or knobs."""
+        return Prepared.load(path, self, scene)
+
+    def render(
+        self,
+        scene: Scene,
+        camera: Camera | str | None = None,
+        size: tuple[int, int] | None = None,
+        seed: int = 0,
+        threads: int | None = None,
+    ) -> Frame:
+        """One frame: `prepare` and `Prepared.render` in one call. size: (width, height), None: the camera's. threads: None: all."""
+        return self.prepare(scene, threads).render(camera, size=size, seed=seed, threads=threads)
+
+    def precompute(self, scene: Scene) -> dict[str, Any]:
+        """Arrays that are built once per geometry and materials; none unless a method says so."""
+        return {}
+
+    @abstractmethod
+    def compose(self, view: View, profile: Profile) -> tuple[Image, Image]:
+        """Direct and indirect light of one view: the stages in order, each under `profile.stage(name)`."""
+
+    def exact_knobs(self) -> dict[str, Any]:
+        """Field -> technique for every field that holds a technique (what may be replaced by its exact counterpart)."""
+        values = {field.name: getattr(self, field.name) for field in dataclasses.fields(self)}  # type: ignore[arg-type]
+        return {name: value for name, value in values.items() if is_technique(value)}

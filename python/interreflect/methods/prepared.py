@@ -1,0 +1,90 @@
+"""A method made ready for one scene: what is built once, and the rendering of frames from it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from interreflect import _core
+from interreflect.frame import Frame
+from interreflect.profile import Profile
+from interreflect.scenes.camera import Camera, checked_size
+from interreflect.scenes.scene import Scene
+from interreflect.stages import camera_of
+
+if TYPE_CHECKING:
+    from interreflect.methods.method import Method
+
+
+@dataclass(frozen=True)
+class View:
+    """One frame to make: what a method's `compose` gets."""
+
+    scene: Scene
+    camera: Camera
+    size: tuple[int, int]  # (width, height)
+    seed: int
+    state: dict[str, Any]
+    history: Any = None
+
+
+@dataclass(frozen=True, eq=False)
+class Prepared:
+    """precompute_milliseconds: wall time of building the hierarchy and whatever the method precomputes."""
+
+    method: Method
+    scene: Scene
+    precompute_milliseconds: float
+    state: dict[str, Any] = field(default_factory=dict, repr=False)
+    threads: int | None = None
+
+    def render(
+        self,
+        camera: Camera | str | None = None,
+        size: tuple[int, int] | None = None,
+        seed: int = 0,
+        threads: int | None = None,
+        scene: Scene | None = None,
+        history: Any = None,
+    ) -> Frame:
+        """The next frame. scene: the same scene with moved bodies or other lights. history: the last frame's.
+
+        ValueError for a scene of other geometry or materials, an unknown camera, a size or seed out of range.
+        """
+        shown = self.scene if scene is None else scene
+        if shown is not self.scene and shown.still_hash != self.scene.still_hash:
+            raise ValueError("render(scene=...) takes the prepared scene with moved bodies, other lights or cameras, not another one")
+        if not 0 <= seed < 2**32:
+            raise ValueError(f"seed must lie in [0, 2^32), got {seed}")
+        place = camera_of(shown, camera)
+        view = View(shown, place, place.size if size is None else checked_size(size), seed, self.state, history)
+        profile = Profile()
+        profile.precompute_milliseconds = self.precompute_milliseconds
+        with _core.Threads(threads if threads is not None else self.threads):
+            _ = shown.core  # a scene that was never rendered builds its hierarchy outside the frame's clock
+            with profile.frame():
+                direct, indirect = self.method.compose(view, profile)
+        return Frame(direct, indirect, profile)
+
+    def _key(self) -> str:
+        return f"{self.method!r} {self.scene.still_hash}"
+
+    def save(self, path: str | Path) -> None:
+        """Writes what was precomputed, with the geometry, materials and knobs it belongs to."""
+        with Path(path).open("wb") as file:
+            np.savez(file, key=np.array(self._key()), milliseconds=np.array(self.precompute_milliseconds), **self.state)
+
+    @staticmethod
+    def load(path: str | Path, method: Method, scene: Scene) -> Prepared:
+        """What `save` wrote. ValueError where it belongs to other geometry, materials or knobs."""
+        with np.load(Path(path), allow_pickle=False) as stored:
+            arrays = dict(stored)
+        spent = float(arrays.pop("milliseconds"))
+        key = str(arrays.pop("key"))
+        prepared = Prepared(method=method, scene=scene, precompute_milliseconds=spent, state=arrays)
+        if key != prepared._key():
+            raise ValueError(f"{path}: made from another scene, other materials or other knobs")
+        return prepared

@@ -1,0 +1,102 @@
+"""Stages by hand: the core's functions for the values a user holds. Each takes a technique first and returns plain data with numpy views."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from interreflect import _core
+from interreflect.scenes.camera import Camera, checked_size
+from interreflect.scenes.scene import Scene
+
+
+def camera_of(scene: Scene, camera: Camera | str | None) -> Camera:
+    """The camera itself, the scene's camera of that name, or its first. KeyError-like ValueError names those there are."""
+    if isinstance(camera, Camera):
+        return camera
+    if camera is None:
+        return scene.camera
+    if camera in scene.cameras:
+        return scene.cameras[camera]
+    raise ValueError(f"scene {scene.name!r} has no camera {camera!r}; it has {', '.join(scene.cameras) or 'none'}")
+
+
+def core_camera(camera: Camera) -> _core.Camera:
+    return _core.Camera(camera.position, camera.target, camera.up, camera.fov_x)
+
+
+def trace_gbuffer(scene: Scene, camera: Camera | str | None = None, size: tuple[int, int] | None = None) -> _core.GBuffer:
+    """What the camera sees through pixel centres: position, normal, albedo, ... as (height, width, ...) views, no copies."""
+    view = camera_of(scene, camera)
+    width, height = view.size if size is None else checked_size(size)
+    return _core.trace_gbuffer(scene.core, core_camera(view), width, height)
+
+
+def shadow(technique: Any, scene: Scene, gbuffer: _core.GBuffer, seed: int = 0) -> _core.DirectLight:
+    """Light of point, spot and directional lights and of emitters, reflected once at the pixels: `.radiance` (height, width, 3)."""
+    return _core.shadow(technique, scene.core, gbuffer, seed)
+
+
+def sky(technique: Any, scene: Scene, gbuffer: _core.GBuffer, seed: int = 0, gathered: Any = None, glossy: Any = None) -> _core.DirectLight:
+    """Light of the environment, reflected once at the pixels. ConeSky takes it from what the march's cones left open: `gathered`, `glossy`."""
+    if isinstance(technique, _core.ConeSky):
+        if gathered is None:
+            raise ValueError("ConeSky needs what the march gathered: sky(..., gathered=march(...))")
+        return _core.cone_sky(gbuffer, gathered, glossy)
+    return _core.sky(technique, scene.core, gbuffer, seed)
+
+
+def place(grid: _core.Grid, scene: Scene, camera: Camera | str | None = None) -> _core.Domain:
+    """The domain of a grid: cubic voxels over the scene's bounds. Some warps need the camera."""
+    view = camera_of(scene, camera) if camera is not None or scene.cameras else None
+    return _core.place(grid, scene.core, None if view is None else core_camera(view))
+
+
+def voxelize(technique: Any, scene: Scene, domain: _core.Domain) -> _core.VoxelGrid:
+    """Which cells the scene's surface passes through, and what it looks like there."""
+    return _core.voxelize(technique, scene.core, domain)
+
+
+def light_voxels(technique: Any, scene: Scene, voxels: _core.VoxelGrid, seed: int = 0) -> _core.LitVoxels:
+    """The radiance that each voxel reflects."""
+    return _core.light_voxels(technique, scene.core, voxels, seed)
+
+
+def prefilter(technique: Any, lit: _core.LitVoxels) -> _core.Pyramid:
+    """Radiance and opacity of ever larger voxels."""
+    return _core.prefilter(technique, lit)
+
+
+def march(
+    technique: Any, pyramid: _core.Pyramid, gbuffer: _core.GBuffer, scene: Scene, share: Any = None, seed: int = 0
+) -> _core.GatheredLight:
+    """Light that arrives at the pixels over the hemisphere: `.irradiance` from voxels, `.sky` from the environment, `.occlusion`."""
+    return _core.march(technique, pyramid, gbuffer, scene.core, _core.EveryPixel() if share is None else share, seed)
+
+
+def glossy(technique: Any, pyramid: _core.Pyramid, gbuffer: _core.GBuffer, scene: Scene, share: Any = None, seed: int = 0) -> _core.GlossyLight:
+    """Light that the glossy lobe reflects towards the camera: `.radiance` from voxels, `.sky` from the environment."""
+    return _core.glossy(technique, pyramid, gbuffer, scene.core, _core.EveryPixel() if share is None else share, seed)
+
+
+def shade(gbuffer: _core.GBuffer, light: _core.GatheredLight, glossy: _core.GlossyLight | None = None) -> NDArray[np.float32]:
+    """(height, width, 3): indirect light that leaves the pixels' surfaces towards the camera."""
+    return _core.shade(gbuffer, light, glossy)
+
+
+def techniques(stage: str) -> tuple[type, ...]:
+    """Every technique of a stage. ValueError names the stages there are."""
+    if stage not in _core.stages:
+        raise ValueError(f"there is no stage {stage!r}; the stages are {', '.join(_core.stages)}")
+    return tuple(_core.stages[stage]["techniques"])
+
+
+def exact(technique: Any) -> Any:
+    """The exact counterpart of a technique: its stage's slow, unapproximated one. ValueError for a stage without."""
+    for stage in type(technique).stages:
+        counterpart = _core.stages[stage]["exact"]
+        if counterpart is not None:
+            return technique if isinstance(technique, counterpart) else counterpart()
+    raise ValueError(f"{type(technique).__name__} belongs to {', '.join(type(technique).stages)}, which has no exact counterpart")
