@@ -1,7 +1,7 @@
 """Interreflect: a laboratory for real-time global illumination.
 
-Scenes go in; methods, composed of interchangeable stages, make pictures; each picture is measured against a path-traced truth; studies chart
-speed against accuracy. Names are loaded when first used, so that `import interreflect` is quick.
+Scenes go in; methods, composed of interchangeable stages, make pictures; each picture is measured against a path-traced
+truth; studies chart speed against accuracy. Names are loaded when first used, so that `import interreflect` is quick.
 """
 
 from __future__ import annotations
@@ -63,6 +63,7 @@ if TYPE_CHECKING:
     from interreflect import methods as methods
     from interreflect import metrics as metrics
     from interreflect import scenes as scenes
+    from interreflect._core import Grid as Grid
     from interreflect.about import about as about
     from interreflect.errors import SceneError as SceneError
     from interreflect.frame import Frame as Frame
@@ -78,7 +79,6 @@ if TYPE_CHECKING:
     from interreflect.scenes.values import Scene as Scene
     from interreflect.scenes.values import SpotLight as SpotLight
     from interreflect.scenes.values import Texture as Texture
-    from interreflect._core import Grid as Grid
     from interreflect.stages import exact as exact
     from interreflect.stages import glossy as glossy
     from interreflect.stages import light_voxels as light_voxels

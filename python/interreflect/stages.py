@@ -1,4 +1,4 @@
-"""Stages by hand: the core's functions for the values a user holds. Each takes a technique first and returns plain data with numpy views."""
+"""Stages by hand: the core's functions for the values a user holds. Each takes a technique first and returns plain data."""
 
 from __future__ import annotations
 
@@ -40,7 +40,8 @@ def shadow(technique: Any, scene: Scene, gbuffer: _core.GBuffer, seed: int = 0) 
 
 
 def sky(technique: Any, scene: Scene, gbuffer: _core.GBuffer, seed: int = 0, gathered: Any = None, glossy: Any = None) -> _core.DirectLight:
-    """Light of the environment, reflected once at the pixels. ConeSky takes it from what the march's cones left open: `gathered`, `glossy`."""
+    """Light of the environment, reflected once at the pixels. ConeSky takes it from what the march's cones left open:
+    `gathered` and `glossy`."""
     if isinstance(technique, _core.ConeSky):
         if gathered is None:
             raise ValueError("ConeSky needs what the march gathered: sky(..., gathered=march(...))")
@@ -76,7 +77,9 @@ def march(
     return _core.march(technique, pyramid, gbuffer, scene.core, _core.EveryPixel() if share is None else share, seed)
 
 
-def glossy(technique: Any, pyramid: _core.Pyramid, gbuffer: _core.GBuffer, scene: Scene, share: Any = None, seed: int = 0) -> _core.GlossyLight:
+def glossy(
+    technique: Any, pyramid: _core.Pyramid, gbuffer: _core.GBuffer, scene: Scene, share: Any = None, seed: int = 0
+) -> _core.GlossyLight:
     """Light that the glossy lobe reflects towards the camera: `.radiance` from voxels, `.sky` from the environment."""
     return _core.glossy(technique, pyramid, gbuffer, scene.core, _core.EveryPixel() if share is None else share, seed)
 

@@ -1,4 +1,4 @@
-"""Scene values to the compiled core's scene. What scenes share (textures, hierarchies) is built once and shared as long as any of them lives."""
+"""Scene values to the compiled core's scene. What scenes share (textures, hierarchies) is built once, while any of them lives."""
 
 from __future__ import annotations
 
