@@ -153,10 +153,11 @@ vec3 Texture::bilinear(const vec2& uv, int index) const {
     return glm::mix(bottom, top, wy);
 }
 
-vec3 Texture::filtered(const vec2& uv, float footprint) const {
-    const float texels = footprint * static_cast<float>(std::max(width(), height()));
+vec3 Texture::filtered(const vec2& uv, const Footprint& footprint) const {
+    const float area = std::fabs(footprint.dx.x * footprint.dy.y - footprint.dx.y * footprint.dy.x);
+    const float texels = area * static_cast<float>(width()) * static_cast<float>(height());
     if (!(texels > 1.0f)) return bilinear(uv, 0);
-    const float level = std::min(std::log2(texels), static_cast<float>(levels() - 1));
+    const float level = std::min(0.5f * std::log2(texels), static_cast<float>(levels() - 1));
     const int fine = static_cast<int>(level);
     const float t = level - static_cast<float>(fine);
     if (fine + 1 >= levels() || t == 0.0f) return bilinear(uv, fine);

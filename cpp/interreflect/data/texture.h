@@ -10,6 +10,11 @@
 
 namespace interreflect {
 
+/// How texture coordinates change from one pixel to the next, to the right and down.
+struct Footprint {
+    vec2 dx{0}, dy{0};
+};
+
 class Texture {
   public:
     /// 8-bit pixels (height x width x channels, top row first, 3 or 4 channels, the fourth unused), sRGB: decoded at every
@@ -26,8 +31,8 @@ class Texture {
     vec3 bilinear(const vec2& uv) const { return bilinear(uv, 0); }
     /// Bilinear look-up in one level.
     vec3 bilinear(const vec2& uv, int level) const;
-    /// Trilinear look-up; `footprint` is the width of the filter as a share of the texture's larger side.
-    vec3 filtered(const vec2& uv, float footprint) const;
+    /// Trilinear look-up in the levels whose texels are as large as the footprint (its parallelogram's area, in texels).
+    vec3 filtered(const vec2& uv, const Footprint& footprint) const;
     /// The mean over all texels.
     vec3 mean() const { return texel(levels_.back(), 0, 0); }
 

@@ -25,7 +25,16 @@ HitGeometry hit_geometry(const Geometry& geometry, std::uint32_t instance, std::
     return at;
 }
 
-SurfacePoint surface_at(const Scene& scene, const Hit& hit, const vec3& direction, float footprint) {
+vec3 visible_normal(const vec3& normal, const vec3& geometric_normal, const vec3& to_viewer) {
+    const vec3 same_side = glm::dot(normal, geometric_normal) < 0.0f ? -normal : normal;
+    const float cosine = glm::dot(same_side, to_viewer);
+    if (cosine > 0.0f) return same_side;
+    // The weights leave the bent normal a cosine above 0: a 64th of the square of the geometric one, before it is made unit.
+    const float geometric = std::fmax(glm::dot(geometric_normal, to_viewer), 1e-6f);
+    return glm::normalize(same_side * geometric + geometric_normal * (0x1p-6f * geometric - cosine));
+}
+
+SurfacePoint surface_at(const Scene& scene, const Hit& hit, const vec3& direction, const Footprint& footprint) {
     const HitGeometry at = hit_geometry(*scene.geometry, hit.instance, hit.triangle, hit.u, hit.v);
     SurfacePoint point;
     point.position = at.position;
@@ -35,7 +44,7 @@ SurfacePoint surface_at(const Scene& scene, const Hit& hit, const vec3& directio
     const Material& material = scene.materials[point.material];
     point.front = glm::dot(at.geometric_normal, direction) < 0.0f;
     point.geometric_normal = point.front ? at.geometric_normal : -at.geometric_normal;
-    point.normal = glm::dot(at.normal, point.geometric_normal) < 0.0f ? -at.normal : at.normal;
+    point.normal = visible_normal(at.normal, point.geometric_normal, -direction);
     point.alpha = material.alpha;
     point.exponent = material.exponent;
     point.lobe = material.lobe;
@@ -46,7 +55,8 @@ SurfacePoint surface_at(const Scene& scene, const Hit& hit, const vec3& directio
     }
     if (point.front && material.emits()) {
         point.emission = material.emission;
-        if (material.emission_map >= 0) point.emission *= scene.textures[material.emission_map]->bilinear(point.texcoord);
+        if (material.emission_map >= 0)
+            point.emission *= scene.textures[material.emission_map]->filtered(point.texcoord, footprint);
     }
     return point;
 }

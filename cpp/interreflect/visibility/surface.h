@@ -27,9 +27,13 @@ struct HitGeometry {
 };
 HitGeometry hit_geometry(const Geometry& geometry, std::uint32_t instance, std::uint32_t triangle, float u, float v);
 
-/// The surface at a hit as seen along `direction` (towards the surface). `footprint`: width of the texture filter as a share of
-/// the texture (0: bilinear in the finest level, as every hit but the G-buffer's is defined).
-SurfacePoint surface_at(const Scene& scene, const Hit& hit, const vec3& direction, float footprint = 0.0f);
+/// The surface at a hit as seen along `direction` (unit, towards the surface). Textures are filtered by `footprint`; without one
+/// they are bilinear in the finest level, as every hit but the G-buffer's is defined.
+SurfacePoint surface_at(const Scene& scene, const Hit& hit, const vec3& direction, const Footprint& footprint = {});
+
+/// The shading normal as a viewer along `to_viewer` (unit) sees it: turned to the geometric normal's side, and where it would
+/// face away from the viewer bent towards the geometric normal until it does not, lest the surface be black there.
+vec3 visible_normal(const vec3& normal, const vec3& geometric_normal, const vec3& to_viewer);
 
 /// How far a ray's origin must be moved off a triangle so that it cannot meet it again: 64 units in the last place of the largest
 /// coordinate that entered the arithmetic. Relative, so it works at any scale and place.
