@@ -1,0 +1,17 @@
+#pragma once
+#include "data/technique.h"
+#include "data/voxel_grid.h"
+
+namespace interreflect {
+
+/// A quarter of the sum, clamped [Rehfeld et al. 2014, 3.1]: a wall one voxel thick stays opaque at every level.
+struct SurfaceCoverage {
+    bool operator==(const SurfaceCoverage&) const = default;
+    static constexpr auto description = describe<SurfaceCoverage>(
+        "SurfaceCoverage", "Opacity is a quarter of the sum of the eight below it, clamped; radiance keeps their mean colour.",
+        Source{"Rehfeld et al. 2014", "3.1"});
+};
+
+Pyramid prefilter(const SurfaceCoverage& technique, const LitVoxels& lit);
+
+}  // namespace interreflect

@@ -1,0 +1,16 @@
+#pragma once
+#include "data/technique.h"
+#include "data/voxel_grid.h"
+
+namespace interreflect {
+
+/// The mean of eight [Freed 2018, 4.4]: keeps the volume's energy, and lets a thin wall fade from level to level.
+struct VolumeCoverage {
+    bool operator==(const VolumeCoverage&) const = default;
+    static constexpr auto description =
+        describe<VolumeCoverage>("VolumeCoverage", "A texel is the mean of the eight below it.", Source{"Freed 2018", "4.4"});
+};
+
+Pyramid prefilter(const VolumeCoverage& technique, const LitVoxels& lit);
+
+}  // namespace interreflect
