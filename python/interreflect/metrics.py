@@ -143,7 +143,7 @@ def _checked(image: Image, reference: Image) -> tuple[npt.NDArray[np.float64], n
     if test.shape != truth.shape:
         raise ValueError(f"image and reference must have the same shape, got {test.shape} and {truth.shape}")
     for name, array in (("image", test), ("reference", truth)):
-        wrong = int(array.size - np.isfinite(array).sum())
+        wrong = array.size - np.count_nonzero(np.isfinite(array))
         if wrong:
             raise ValueError(f"{name} has {wrong} numbers that are not finite, of {array.size}")
     return test.astype(np.float64), truth.astype(np.float64)

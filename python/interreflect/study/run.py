@@ -184,7 +184,7 @@ class _Bench:
 
     def _compare(self, record: Record, frame: Frame, truth: Truth) -> Record:
         """The record with status and metrics; a metric that this picture cannot have is NaN, with the reason as a warning."""
-        wrong = sum(int((~np.isfinite(light)).sum()) for light in (frame.image, frame.indirect))
+        wrong = sum(int(light.size - np.count_nonzero(np.isfinite(light))) for light in (frame.image, frame.indirect))
         if wrong:
             failure = f"{wrong} numbers of the picture are not finite"
             return dataclasses.replace(record, status=NOT_FINITE, failure=failure, images=self.study.images)

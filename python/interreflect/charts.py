@@ -1,0 +1,264 @@
+"""Charts of records. They read records only, render nothing, and return matplotlib Figures without global state.
+
+Colours are those of Okabe and Ito, told apart with any colour vision; methods also differ in marker. `dark=True` draws for a dark page.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from interreflect import metrics
+from interreflect.study.pareto import MERIT, NOISE_OF, VIEW, configurations, pareto
+from interreflect.study.records import OK, Record, Records
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+# Okabe and Ito 2008, without black and with yellow last: it is faint on white.
+COLOURS = ("#0072B2", "#E69F00", "#009E73", "#D55E00", "#CC79A7", "#56B4E9", "#999999", "#F0E442")
+MARKERS = "osD^vPX*"
+LIGHT = {"paper": "#ffffff", "ink": "#1a1a1a", "faint": "#8a8a8a"}
+DARK = {"paper": "#16181d", "ink": "#e6e6e6", "faint": "#8f949e"}
+LABELS = {
+    "milliseconds": "time per frame, ms (median)",
+    "milliseconds_p95": "time per frame, ms (95th percentile)",
+    "precompute_milliseconds": "precomputation, ms",
+    "relmse": "relMSE",
+    "trimmed_relmse": "relMSE without the largest .1 %",
+    "indirect_relmse": "relMSE of indirect light",
+    "indirect_trimmed_relmse": "relMSE of indirect light without the largest .1 %",
+    "flip": "mean HDR-FLIP",
+    "ssim": "SSIM (better upward)",
+}
+ERROR_RANGE = (1e-4, 1.0)  # relative squared error of a pixel, black to white in error maps
+NAMED_POINTS = 10  # points of a front that get their knobs written beside them
+
+
+def speed_accuracy(records: Records, x: str = "milliseconds", y: str = "relmse", dark: bool = False) -> Figure:
+    """Error against time, log-log, a panel per scene, camera and bounces; a point per configuration, seeds averaged.
+
+    Lines join what no other setting of the same method beats; ringed points are beaten by no method. Errors in the shaded
+    band are within the truth's own noise. ValueError for columns that do not rank, or if nothing was measured.
+    """
+    table, front = configurations(records), pareto(records, x, y)
+    table = table[(table[x] > 0) & np.isfinite(table[y]) & ((table[y] > 0) | (y == MERIT))]
+    _need(table, f"a positive {x} and {y}")
+    views = list(table.groupby(VIEW, sort=False))
+    figure, axes = _panels(len(views), dark)
+    styles = _styles(table["method"])
+    for ax, (view, rows) in zip(axes, views, strict=True):
+        for method, points in rows.groupby("method", sort=False):
+            colour, marker = styles[str(method)]
+            ax.scatter(points[x], points[y], s=26, color=colour, marker=marker, label=str(method), zorder=3)
+            own = _own_front(points, x, y)
+            ax.plot(own[x], own[y], color=colour, linewidth=1, alpha=0.7, zorder=2)
+        ax.set_xscale("log")
+        ax.set_yscale("linear" if y == MERIT else "log")
+        ax.margins(0.12)
+        best = front[(front[VIEW] == list(view)).all(axis=1) & (front[x] > 0) & ((front[y] > 0) | (y == MERIT))]
+        ax.scatter(best[x], best[y], s=110, facecolors="none", edgecolors=_theme(dark)["ink"], linewidths=0.8, zorder=4)
+        _name_points(ax, best.head(NAMED_POINTS), x, y, _varied(records), dark)
+        _noise_band(ax, rows, y, dark)
+        ax.set_title(_view_title(view), fontsize=9)
+        ax.set(xlabel=LABELS[x], ylabel=LABELS[y])
+    _legend(figure, axes, dark)
+    return figure
+
+
+def stages(records: Records, dark: bool = False) -> Figure:
+    """Where the time of a frame goes: a stacked bar per configuration, a panel per view and method with its own scale.
+
+    "other" is the frame's time outside its stages. ValueError if nothing was measured.
+    """
+    table = configurations(records)
+    _need(table, "stages")
+    columns = [name for name in table.columns if name.startswith("stage.") and name.endswith(".milliseconds")]
+    table["stage.other.milliseconds"] = (table["milliseconds"] - table[columns].sum(axis=1)).clip(lower=0)
+    columns.append("stage.other.milliseconds")
+    groups = list(table.groupby([*VIEW, "method"], sort=False))
+    figure, axes = _rows([len(rows) for _, rows in groups], dark)
+    varied = _varied(records)
+    for ax, (group, rows) in zip(axes, groups, strict=True):
+        left, places = np.zeros(len(rows)), np.arange(len(rows))
+        for index, column in enumerate(columns):
+            width = rows[column].fillna(0).to_numpy(float)
+            colour = _theme(dark)["faint"] if column == columns[-1] else COLOURS[index % len(COLOURS)]
+            hatch = "////" if index >= len(COLOURS) and column != columns[-1] else None
+            label = column.removeprefix("stage.").removesuffix(".milliseconds")
+            ax.barh(places, width, left=left, color=colour, hatch=hatch, label=label if width.any() else None, height=0.7)
+            left += width
+        ax.set_yticks(places, [_knobs(row, varied) or str(group[-1]) for _, row in rows.iterrows()])
+        ax.invert_yaxis()
+        ax.set_title(f"{group[-1]}: {_view_title(group[:-1])}", fontsize=9)
+        ax.set(xlabel=LABELS["milliseconds"])
+        ax.grid(axis="y", visible=False)
+    _legend(figure, axes, dark)
+    return figure
+
+
+def images(records: Records, limit: int = 6, dark: bool = False) -> Figure:
+    """Pictures beside their truth with error maps below, a pair of rows per view; the first seed of each.
+
+    Shown are every method's most accurate configuration and those on the front, at most `limit` a view. Tone-mapped with the
+    truth's exposure (`metrics.tone_map`); error maps share one logarithmic scale. ValueError if no pictures were kept.
+    """
+    shown = [(view, picked) for view, picked in _pictured(records, limit) if picked]
+    if not shown:
+        raise ValueError(f"study {records.study!r} has no pictures to show")
+    columns = 1 + max(len(picked) for _, picked in shown)
+    figure = _figure((2.6 * columns, 4.0 * len(shown)), dark)
+    grid = figure.subplots(2 * len(shown), columns, squeeze=False)
+    mapped = None
+    for row, (view, picked) in enumerate(shown):
+        upper, lower = grid[2 * row], grid[2 * row + 1]
+        truth = records.truth(picked[0])[0]
+        upper[0].imshow(metrics.tone_map(truth, truth))
+        upper[0].set_title(f"truth, relMSE {picked[0].noise:.1e}\n{_view_title(view)}", fontsize=8)
+        for ax, below, record in zip(upper[1:], lower[1:], picked, strict=False):
+            image = records.images(record)[0]
+            ax.imshow(metrics.tone_map(image, truth))
+            ax.set_title(f"{record.method} {_knobs(record.row(), _varied(records))}\n{record.milliseconds:.3g} ms", fontsize=8)
+            mapped = below.imshow(metrics.error_map(image, truth), cmap="magma", norm=_error_norm())
+            below.set_title(f"relMSE {record.metrics['relmse']:.2e}", fontsize=8)
+    for ax in grid.flat:
+        ax.set_axis_off()
+        ax.title.set_color(_theme(dark)["ink"])
+    if mapped is not None:
+        bar = figure.colorbar(mapped, ax=list(grid.flat), shrink=0.5, extend="both", location="bottom", fraction=0.04, pad=0.02)
+        bar.set_label("relative squared error of a pixel", color=_theme(dark)["ink"], fontsize=8)
+        bar.ax.tick_params(which="both", colors=_theme(dark)["ink"], labelsize=8)
+    return figure
+
+
+def _pictured(records: Records, limit: int) -> list[tuple[tuple[Any, ...], list[Record]]]:
+    """Per view, the records whose pictures are worth showing, fast to slow: every method's most accurate, then those on the front."""
+    first: dict[tuple[Any, ...], Record] = {}
+    for record in records:
+        if record.images and record.status == OK:
+            first.setdefault((record.scene, record.camera, record.row()["bounces"], record.configuration), record)
+    table, front, result = configurations(records), pareto(records), []
+    for view, rows in table.groupby(VIEW, sort=False):
+        most_accurate = rows.loc[rows.groupby("method", sort=False)["relmse"].idxmin()]["configuration"]
+        on_front = front[(front[VIEW] == list(view)).all(axis=1)]["configuration"]
+        wanted = list(dict.fromkeys([*most_accurate, *on_front]))[:limit]
+        picked = [first[(*view, configuration)] for configuration in wanted if (*view, configuration) in first]
+        result.append((tuple(view), sorted(picked, key=lambda record: record.milliseconds)))
+    return result
+
+
+def _error_norm() -> Any:
+    from matplotlib.colors import LogNorm
+
+    return LogNorm(*ERROR_RANGE, clip=True)
+
+
+def _theme(dark: bool) -> dict[str, str]:
+    return DARK if dark else LIGHT
+
+
+def _figure(size: tuple[float, float], dark: bool) -> Figure:
+    from matplotlib.figure import Figure
+
+    return Figure(figsize=size, layout="constrained", facecolor=_theme(dark)["paper"], dpi=120)
+
+
+def _panels(count: int, dark: bool) -> tuple[Figure, list[Axes]]:
+    columns = min(count, 2)
+    rows = math.ceil(count / columns)
+    figure = _figure((6.4 * columns, 4.6 * rows), dark)
+    axes = list(figure.subplots(rows, columns, squeeze=False).flat)
+    for unused in axes[count:]:
+        unused.remove()
+    return figure, [_dressed(ax, dark) for ax in axes[:count]]
+
+
+def _rows(bars: Sequence[int], dark: bool) -> tuple[Figure, list[Axes]]:
+    figure = _figure((8.5, 0.6 + sum(0.95 + 0.3 * n for n in bars)), dark)
+    axes = figure.subplots(len(bars), 1, squeeze=False, gridspec_kw={"height_ratios": [0.95 + 0.3 * n for n in bars]})
+    return figure, [_dressed(ax, dark) for ax in axes.flat]
+
+
+def _dressed(ax: Axes, dark: bool) -> Axes:
+    theme = _theme(dark)
+    ax.set_facecolor(theme["paper"])
+    ax.grid(True, which="major", color=theme["faint"], linewidth=0.5, alpha=0.35)
+    ax.set_axisbelow(True)
+    for side, spine in ax.spines.items():
+        spine.set(color=theme["faint"], visible=side in ("left", "bottom"))
+    ax.tick_params(which="both", colors=theme["ink"], labelsize=8)
+    for text in (ax.xaxis.label, ax.yaxis.label, ax.title):
+        text.set(color=theme["ink"], fontsize=9)
+    return ax
+
+
+def _legend(figure: Figure, axes: Iterable[Axes], dark: bool) -> None:
+    entries = {label: handle for ax in axes for handle, label in zip(*ax.get_legend_handles_labels(), strict=True)}
+    legend = figure.legend(
+        entries.values(), entries.keys(), loc="outside lower center", ncols=min(len(entries), 5), frameon=False, fontsize=8
+    )
+    for text in legend.get_texts():
+        text.set_color(_theme(dark)["ink"])
+
+
+def _styles(methods: pd.Series[Any]) -> dict[str, tuple[str, str]]:
+    names = [str(name) for name in methods.unique()]
+    return {name: (COLOURS[i % len(COLOURS)], MARKERS[i % len(MARKERS)]) for i, name in enumerate(names)}
+
+
+def _own_front(points: pd.DataFrame, x: str, y: str) -> pd.DataFrame:
+    ordered = points.sort_values([x, y], ascending=[True, y != MERIT])
+    best = ordered[y].cummax() if y == MERIT else ordered[y].cummin()
+    return ordered[(ordered[y] == best) & ~best.duplicated()]
+
+
+def _noise_band(ax: Axes, rows: pd.DataFrame, y: str, dark: bool) -> None:
+    if y not in NOISE_OF or not (rows[NOISE_OF[y]] > 0).any():
+        return
+    noise, theme = float(rows[NOISE_OF[y]].max()), _theme(dark)
+    ax.axhspan(noise * 1e-9, noise, color=theme["faint"], alpha=0.2, linewidth=0, zorder=1)
+    ax.annotate(
+        "the truth's noise", (0.01, noise), xycoords=("axes fraction", "data"), va="top", fontsize=7, color=theme["faint"]
+    )
+    lowest = min(float(rows[y].min()), noise)
+    ax.set_ylim(lowest / 2, float(rows[y].max()) * 2)
+
+
+def _varied(records: Records) -> dict[str, list[str]]:
+    """Method -> the knob columns that differ between its measured records: those that tell its points apart."""
+    measured = records.table[records.table["status"] == OK]
+    names = records.knob_columns()
+    spread = {method: rows[names].nunique() for method, rows in measured.groupby("method")}
+    return {str(method): [name for name in names if counts[name] > 1] for method, counts in spread.items()}
+
+
+def _knobs(row: Any, varied: Mapping[str, Sequence[str]]) -> str:
+    return ", ".join(_short(name, row[name]) for name in varied.get(row["method"], ()))
+
+
+def _short(name: str, value: Any) -> str:
+    text = f"{value:g}" if isinstance(value, int | float) and not isinstance(value, bool) else str(value).removesuffix("()")
+    return text if isinstance(value, str) else f"{name.rpartition('.')[2]} {text}"
+
+
+def _name_points(ax: Axes, rows: pd.DataFrame, x: str, y: str, varied: Mapping[str, Sequence[str]], dark: bool) -> None:
+    low, high = np.log(ax.get_xlim())
+    for _, row in rows.iterrows():
+        side = ("right", -7) if (math.log(row[x]) - low) / (high - low) > 0.6 else ("left", 7)
+        place = {"xytext": (side[1], 6), "textcoords": "offset points", "ha": side[0]}
+        ax.annotate(_knobs(row, varied), (row[x], row[y]), fontsize=6.5, color=_theme(dark)["ink"], **place)
+
+
+def _view_title(view: Any) -> str:
+    scene, camera, bounces = view
+    return f"{scene}, {camera}, {'all bounces' if bounces == 'all' else f'bounces={bounces}'}"
+
+
+def _need(table: pd.DataFrame, what: str) -> None:
+    if table.empty:
+        raise ValueError(f"no record has {what}")
