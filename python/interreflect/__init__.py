@@ -23,11 +23,12 @@ _HOMES = {
     **dict.fromkeys(("techniques", "exact"), "stages"),
     **dict.fromkeys(("Study", "sweep"), "study.study"),
     "run": "study.run",
-    **dict.fromkeys(("Records", "load_records"), "study.records"),
+    "Records": "study.records",
+    "load_records": "study.store",
     **dict.fromkeys(("Reference", "reference"), "study.reference"),
     **dict.fromkeys(("pareto", "cheapest", "best", "equal_time", "equal_error"), "study.pareto"),
     "report": "study.report",
-    "about": "about",
+    "about": "machine",  # not a module of that name: importing it would put the module in the function's place
 }
 _MODULES = ("methods", "scenes", "metrics", "charts")
 
@@ -64,9 +65,9 @@ if TYPE_CHECKING:
     from interreflect import metrics as metrics
     from interreflect import scenes as scenes
     from interreflect._core import Grid as Grid
-    from interreflect.about import about as about
     from interreflect.errors import SceneError as SceneError
     from interreflect.frame import Frame as Frame
+    from interreflect.machine import about as about
     from interreflect.profile import Profile as Profile
     from interreflect.profile import Stage as Stage
     from interreflect.scenes.load import load_scene as load_scene
@@ -96,10 +97,10 @@ if TYPE_CHECKING:
     from interreflect.study.pareto import equal_time as equal_time
     from interreflect.study.pareto import pareto as pareto
     from interreflect.study.records import Records as Records
-    from interreflect.study.records import load_records as load_records
     from interreflect.study.reference import Reference as Reference
     from interreflect.study.reference import reference as reference
     from interreflect.study.report import report as report
     from interreflect.study.run import run as run
+    from interreflect.study.store import load_records as load_records
     from interreflect.study.study import Study as Study
     from interreflect.study.study import sweep as sweep

@@ -1,6 +1,7 @@
 """Charts of records. They read records only, render nothing, and return matplotlib Figures without global state.
 
-Colours are those of Okabe and Ito, told apart with any colour vision; methods also differ in marker. `dark=True` draws for a dark page.
+Colours are those of Okabe and Ito, told apart with any colour vision; methods also differ in marker. `dark=True` draws for a
+dark page.
 """
 
 from __future__ import annotations
@@ -222,9 +223,7 @@ def _noise_band(ax: Axes, rows: pd.DataFrame, y: str, dark: bool) -> None:
         return
     noise, theme = float(rows[NOISE_OF[y]].max()), _theme(dark)
     ax.axhspan(noise * 1e-9, noise, color=theme["faint"], alpha=0.2, linewidth=0, zorder=1)
-    ax.annotate(
-        "the truth's noise", (0.01, noise), xycoords=("axes fraction", "data"), va="top", fontsize=7, color=theme["faint"]
-    )
+    ax.annotate("the truth's noise", (0.01, noise), xycoords=("axes fraction", "data"), va="top", fontsize=7, color=theme["faint"])
     lowest = min(float(rows[y].min()), noise)
     ax.set_ylim(lowest / 2, float(rows[y].max()) * 2)
 
@@ -247,11 +246,11 @@ def _short(name: str, value: Any) -> str:
 
 
 def _name_points(ax: Axes, rows: pd.DataFrame, x: str, y: str, varied: Mapping[str, Sequence[str]], dark: bool) -> None:
-    low, high = np.log(ax.get_xlim())
+    low, high = ax.get_xlim()
+    ax.set_xlim(low, high * (high / low) ** 0.25)  # room for the last one's words
     for _, row in rows.iterrows():
-        side = ("right", -7) if (math.log(row[x]) - low) / (high - low) > 0.6 else ("left", 7)
-        place = {"xytext": (side[1], 6), "textcoords": "offset points", "ha": side[0]}
-        ax.annotate(_knobs(row, varied), (row[x], row[y]), fontsize=6.5, color=_theme(dark)["ink"], **place)
+        text = _knobs(row, varied)
+        ax.annotate(text, (row[x], row[y]), xytext=(7, 5), textcoords="offset points", fontsize=6.5, color=_theme(dark)["ink"])
 
 
 def _view_title(view: Any) -> str:

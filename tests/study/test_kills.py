@@ -29,11 +29,11 @@ SCRIPT = textwrap.dedent("""
             time.sleep(.02)
             return FakePrepared(self, scene)
 
-    methods = sweep(Slow, {"error": [.1, .2, .3, .4, .5], "mode": ["ok", "nan", "raises"]})
+    methods = sweep(Slow, {"error": [.1, .2, .3, .4], "mode": ["ok", "nan", "raises"]})
     scenes = [Scene(), Scene("bright", 3.0)]
-    run(Study(name="kill", scenes=scenes, methods=methods, seeds=range(2), size=(160, 120), repeats=1), folder / "r")
+    run(Study(name="kill", scenes=scenes, methods=methods, seeds=range(2), size=(64, 48), repeats=1), folder / "r")
 """)
-CELLS = 60
+CELLS = 48
 
 
 @pytest.mark.parametrize("kills", [3, pytest.param(20, marks=pytest.mark.long)])
@@ -82,9 +82,7 @@ def test_an_interrupt_leaves_a_study_that_resumes(tmp_path, fake_truth):
                 raise KeyboardInterrupt
             return FakePrepared(self, scene)
 
-    study = Study(
-        name="stop", scenes=[Scene()], methods=[Interrupted(error=e) for e in (0.1, 0.2, 0.3, 0.4)], size=(32, 24), repeats=1
-    )
+    study = Study(name="stop", scenes=[Scene()], methods=[Interrupted(error=e) for e in (0.1, 0.2, 0.3, 0.4)], size=(32, 24), repeats=1)
     with pytest.raises(KeyboardInterrupt):
         run(study, tmp_path / "r")
     records = load_records(tmp_path / "r")

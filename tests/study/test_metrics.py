@@ -37,9 +37,7 @@ def test_relmse_of_unbiased_relative_noise_is_its_variance():
     assert metrics.relmse(noisy, truth) == pytest.approx(0.04 / 1.01, rel=0.013)
 
 
-@pytest.mark.parametrize(
-    "metric", [metrics.relmse, metrics.trimmed_relmse, metrics.energy_ratio, metrics.hue_shift, metrics.ssim]
-)
+@pytest.mark.parametrize("metric", [metrics.relmse, metrics.trimmed_relmse, metrics.energy_ratio, metrics.hue_shift, metrics.ssim])
 @pytest.mark.parametrize("scale", [1e-4, 1e4])
 def test_exposure_does_not_matter(metric, scale):
     other = NOISY * random.uniform(0.8, 1.2, NOISY.shape)

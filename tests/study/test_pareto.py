@@ -98,9 +98,7 @@ def test_the_best_keeps_within_the_budget():
 
 
 def test_equal_time_ranks_every_methods_most_accurate_within_the_budget():
-    table = equal_time(
-        records(record(5, 0.3, "a"), record(9, 0.2, "a"), record(8, 0.1, "b"), record(50, 0.01, "b")), milliseconds=10
-    )
+    table = equal_time(records(record(5, 0.3, "a"), record(9, 0.2, "a"), record(8, 0.1, "b"), record(50, 0.01, "b")), milliseconds=10)
     assert list(table[["method", "milliseconds", "relmse"]].itertuples(index=False, name=None)) == [("b", 8, 0.1), ("a", 9, 0.2)]
 
 

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from interreflect import metrics
-from interreflect.about import about
+from interreflect.machine import about
 from interreflect.study.files import canonical
 from interreflect.study.interface import Frame, Method, Prepared, Scene
 from interreflect.study.records import FAILED, NOT_FINITE, OK, Record, Records
@@ -124,9 +124,7 @@ class _Bench:
             truth = self._truth(cell)
         except Exception as error:
             return dataclasses.replace(record, status=FAILED, failure=f"reference: {_words(error)}"), None, None
-        record = dataclasses.replace(
-            record, noise=truth.noise, indirect_noise=truth.indirect_noise, truth=truth.key, truth_spp=truth.spp
-        )
+        record = dataclasses.replace(record, noise=truth.noise, indirect_noise=truth.indirect_noise, truth=truth.key, truth_spp=truth.spp)
         try:
             prepared = self._prepare(cell.scene, cell.method)
             frame, timing = measure(
@@ -137,8 +135,6 @@ class _Bench:
             record = dataclasses.replace(
                 record, precompute_milliseconds=float(prepared.precompute_milliseconds), **dataclasses.asdict(timing)
             )
-            if frame.image.shape != truth.image.shape:
-                raise ValueError(f"the picture's shape must be {truth.image.shape}, got {frame.image.shape}")
             return self._compare(record, frame, truth), frame, truth
         except Exception as error:
             return dataclasses.replace(record, status=FAILED, failure=_words(error)), None, None
@@ -171,9 +167,7 @@ class _Bench:
         kept = self._truths[1]
         key = reference_key(cell.scene, cell.camera, size, cell.bounces, wanted, 0)
         if key not in kept:
-            kept[key] = reference(
-                cell.scene, cell.camera, size, cell.bounces, wanted.noise, wanted.max_spp, threads=self.study.threads
-            )
+            kept[key] = reference(cell.scene, cell.camera, size, cell.bounces, wanted.noise, wanted.max_spp, threads=self.study.threads)
         return kept[key]
 
     def _prepare(self, scene: Scene, method: Method) -> Prepared:
@@ -184,22 +178,23 @@ class _Bench:
 
     def _compare(self, record: Record, frame: Frame, truth: Truth) -> Record:
         """The record with status and metrics; a metric that this picture cannot have is NaN, with the reason as a warning."""
-        wrong = sum(int(light.size - np.count_nonzero(np.isfinite(light))) for light in (frame.image, frame.indirect))
+        image, indirect = frame.image, frame.indirect
+        if image.shape != truth.image.shape:
+            raise ValueError(f"the picture's shape must be {truth.image.shape}, got {image.shape}")
+        wrong = sum(int(light.size - np.count_nonzero(np.isfinite(light))) for light in (image, indirect))
         if wrong:
             failure = f"{wrong} numbers of the picture are not finite"
             return dataclasses.replace(record, status=NOT_FINITE, failure=failure, images=self.study.images)
-        pairs = [(name, metric, frame.image, truth.image) for name, metric in ON_IMAGE.items()]
-        pairs += [(name, metric, frame.indirect, truth.indirect) for name, metric in ON_INDIRECT.items()]
+        pairs = [(name, metric, image, truth.image) for name, metric in ON_IMAGE.items()]
+        pairs += [(name, metric, indirect, truth.indirect) for name, metric in ON_INDIRECT.items()]
         values, reasons = {}, []
-        for name, metric, image, target in pairs:
+        for name, metric, light, target in pairs:
             try:
-                values[name] = metric(image, target)
+                values[name] = metric(light, target)
             except ValueError as error:
                 values[name] = math.nan
                 reasons.append(f"{name}: {error}")
-        return dataclasses.replace(
-            record, status=OK, metrics=values, warnings=(*record.warnings, *reasons), images=self.study.images
-        )
+        return dataclasses.replace(record, status=OK, metrics=values, warnings=(*record.warnings, *reasons), images=self.study.images)
 
 
 def _words(error: Exception) -> str:

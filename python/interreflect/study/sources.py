@@ -9,7 +9,7 @@ from pathlib import Path
 
 PACKAGE = Path(__file__).resolve().parent.parent
 # What only reads records, or whose effect is in the scene's hash already.
-WITHOUT_EFFECT = ("about.py", "cache.py", "charts.py", "cli.py", "metrics.py", "scenes", "study")
+WITHOUT_EFFECT = ("cache.py", "charts.py", "cli.py", "errors.py", "machine.py", "metrics.py", "scenes", "study")
 
 
 @cache

@@ -45,9 +45,7 @@ def measure(render: Callable[[], Frame], repeats: int, max_repeats: int) -> tupl
     collecting = gc.isenabled()
     gc.disable()
     try:
-        while len(profiles) < repeats or (
-            len(profiles) < max_repeats and not settled([profile.milliseconds for profile in profiles])
-        ):
+        while len(profiles) < repeats or (len(profiles) < max_repeats and not settled([profile.milliseconds for profile in profiles])):
             frame = render()
             profiles.append(frame.profile)
     finally:
