@@ -143,7 +143,10 @@ std::shared_ptr<BoundScene> make_scene(std::shared_ptr<const Geometry> geometry,
     if (intersector == nullptr || intersector->geometry() != scene.geometry)
         throw py::value_error("intersector was built from another geometry");
     bound->intersector = std::move(intersector);
-    run([&] { finish_scene(scene); });
+    run([&] {
+        finish_scene(scene);
+        bound->lights = std::make_shared<LightSampler>(scene);
+    });
     return bound;
 }
 

@@ -5,15 +5,17 @@
 #include <memory>
 
 #include "data/scene.h"
+#include "shading/lights.h"
 #include "visibility/intersector.h"
 
 namespace interreflect::bindings {
 namespace py = pybind11;
 
-/// What Python holds as a scene: the plain data and the hierarchy over it.
+/// What Python holds as a scene: the plain data the hierarchy over it and its lights.
 struct BoundScene {
     Scene scene;
     std::shared_ptr<const Intersector> intersector;
+    std::shared_ptr<const LightSampler> lights;  // of `scene`, which it refers to
 };
 
 void bind_data(py::module_& m);

@@ -1,0 +1,146 @@
+#include "shading/brdf.h"
+
+#include "math/sampling.h"
+
+namespace interreflect {
+namespace {
+
+float squared(float x) { return x * x; }
+
+/// What the lobes need of a pair of directions. `half` lies on the normal's side.
+struct Angles {
+    float cos_o, cos_i, cos_half, sin2_half, cos_o_half;
+};
+Angles angles(const vec3& n, const vec3& wo, const vec3& wi) {
+    const vec3 sum = wo + wi;
+    const float length = glm::length(sum);
+    vec3 half = length > 0.0f ? sum / length : n;
+    if (glm::dot(n, half) < 0.0f) half = -half;
+    // The sine from the cross product: 1 - cos^2 has no digits left for the narrow lobes.
+    const vec3 across = glm::cross(n, half);
+    return {glm::dot(n, wo), glm::dot(n, wi), glm::dot(n, half), glm::dot(across, across), glm::dot(wo, half)};
+}
+
+vec3 schlick(const vec3& specular, float cosine) {
+    const float m = std::fmin(std::fmax(1.0f - cosine, 0.0f), 1.0f);
+    return specular + (vec3(1) - specular) * (m * m * m * m * m);
+}
+
+float ggx_distribution(float alpha, const Angles& a) {
+    const float a2 = alpha * alpha, d = a2 * a.cos_half * a.cos_half + a.sin2_half;
+    return a2 / (pi * d * d);
+}
+/// sqrt(alpha^2 sin^2 + cos^2), the root in Smith's shadowing.
+float smith_root(float alpha, float cosine) { return std::sqrt(squared(alpha) + (1.0f - squared(alpha)) * squared(cosine)); }
+
+float phong_cosine(const SurfacePoint& p, const vec3& wo, const vec3& wi) {
+    const vec3 mirror = 2.0f * glm::dot(p.normal, wo) * p.normal - wo;
+    return std::fmax(0.0f, glm::dot(mirror, wi));
+}
+/// Scale of the Blinn-Phong lobe for which it reflects everything at normal view.
+float blinn_phong_scale(float n) { return (n + 2.0f) * (n + 4.0f) / (8.0f * pi * (std::exp2(-0.5f * n) + n)); }
+
+vec3 lobe_value(const SurfacePoint& p, const vec3& wo, const vec3& wi, const Angles& a) {
+    const float n = p.exponent;
+    switch (p.lobe) {
+        case Lobe::phong:
+            return p.specular * ((n + 2.0f) / (2.0f * pi) * std::pow(phong_cosine(p, wo, wi), n));
+        case Lobe::blinn_phong:
+            return p.specular * (blinn_phong_scale(n) * std::pow(a.cos_half, n));
+        case Lobe::ggx:
+            break;
+    }
+    // Height-correlated Smith over 4 cos cos [Heitz 2014, eq. 99].
+    const float masking = 0.5f / (a.cos_i * smith_root(p.alpha, a.cos_o) + a.cos_o * smith_root(p.alpha, a.cos_i));
+    return schlick(p.specular, a.cos_o_half) * (ggx_distribution(p.alpha, a) * masking);
+}
+
+float lobe_pdf(const SurfacePoint& p, const vec3& wo, const vec3& wi, const Angles& a) {
+    const float n = p.exponent;
+    switch (p.lobe) {
+        case Lobe::phong:
+            return (n + 1.0f) / (2.0f * pi) * std::pow(phong_cosine(p, wo, wi), n) *
+                   (glm::dot(p.normal, wo) > 0.0f ? 1.0f : 0.0f);
+        case Lobe::blinn_phong:
+            return (n + 1.0f) / (2.0f * pi) * std::pow(a.cos_half, n) / std::fmax(4.0f * std::fabs(a.cos_o_half), 1e-12f);
+        case Lobe::ggx:
+            break;
+    }
+    if (a.cos_o_half <= 0.0f) return 0.0f;
+    // Visible normals: G1 D / (4 cos) [Heitz 2018].
+    return ggx_distribution(p.alpha, a) / (2.0f * (a.cos_o + smith_root(p.alpha, a.cos_o)));
+}
+
+/// Visible normal by a spherical cap [Dupuy and Benyoub 2023], in the frame of the shading normal.
+vec3 sample_visible_normal(const vec3& wo, float alpha, const vec2& u) {
+    const vec3 stretched = glm::normalize(vec3(wo.x * alpha, wo.y * alpha, wo.z));
+    const float phi = 2.0f * pi * u.x, z = (1.0f - u.y) * (1.0f + stretched.z) - stretched.z;
+    const float r = std::sqrt(std::fmax(0.0f, 1.0f - z * z));
+    const vec3 h = vec3(r * std::cos(phi), r * std::sin(phi), z) + stretched;
+    return glm::normalize(vec3(h.x * alpha, h.y * alpha, std::fmax(h.z, 1e-12f)));
+}
+
+/// Density (n + 1) / (2 pi) cos^n about +z.
+vec3 sample_cosine_power(float n, const vec2& u) {
+    const float c = std::pow(1.0f - u.x, 1.0f / (n + 1.0f)), s = std::sqrt(std::fmax(0.0f, 1.0f - c * c)), phi = 2.0f * pi * u.y;
+    return {s * std::cos(phi), s * std::sin(phi), c};
+}
+
+vec3 sample_lobe(const SurfacePoint& p, const vec3& wo, const vec2& u) {
+    const vec3 n = p.normal;
+    if (p.lobe == Lobe::phong) {
+        const vec3 mirror = 2.0f * glm::dot(n, wo) * n - wo;
+        return Frame(glm::normalize(mirror)).to_world(sample_cosine_power(p.exponent, u));
+    }
+    const Frame frame(n);
+    const vec3 half = frame.to_world(p.lobe == Lobe::ggx ? sample_visible_normal(frame.to_local(wo), p.alpha, u)
+                                                         : sample_cosine_power(p.exponent, u));
+    return 2.0f * glm::dot(wo, half) * half - wo;
+}
+
+/// Probability of choosing the glossy lobe; negative where nothing is reflected.
+float glossy_share(const SurfacePoint& p, float cos_o) {
+    const float diffuse = luminance(p.albedo);
+    if (max_component(p.specular) <= 0.0f) return diffuse > 0.0f ? 0.0f : -1.0f;
+    const float glossy = luminance(p.lobe == Lobe::ggx ? schlick(p.specular, cos_o) : p.specular);
+    return glossy / (glossy + diffuse);
+}
+
+}  // namespace
+
+BrdfValue evaluate_brdf_and_pdf(const SurfacePoint& p, const vec3& wo, const vec3& wi) {
+    const float cos_o = glm::dot(p.normal, wo);
+    const float share = cos_o > 0.0f ? glossy_share(p, cos_o) : -1.0f;
+    if (share < 0.0f) return {};
+    const float cos_i = glm::dot(p.normal, wi);
+    BrdfValue result;
+    result.pdf = (1.0f - share) * std::fmax(cos_i, 0.0f) / pi;
+    const bool above = cos_i > 0.0f && glm::dot(p.geometric_normal, wo) > 0.0f && glm::dot(p.geometric_normal, wi) > 0.0f;
+    if (above) result.value = p.albedo / pi;
+    if (share <= 0.0f) return result;
+    const Angles a = angles(p.normal, wo, wi);
+    result.pdf += share * lobe_pdf(p, wo, wi, a);
+    if (above) result.value += lobe_value(p, wo, wi, a);
+    return result;
+}
+
+vec3 evaluate_brdf(const SurfacePoint& point, const vec3& wo, const vec3& wi) {
+    return evaluate_brdf_and_pdf(point, wo, wi).value;
+}
+
+float brdf_pdf(const SurfacePoint& point, const vec3& wo, const vec3& wi) { return evaluate_brdf_and_pdf(point, wo, wi).pdf; }
+
+BrdfSample sample_brdf(const SurfacePoint& p, const vec3& wo, float choose, const vec2& u) {
+    const float cos_o = glm::dot(p.normal, wo);
+    const float share = cos_o > 0.0f ? glossy_share(p, cos_o) : -1.0f;
+    if (share < 0.0f) return {};
+    BrdfSample sample;
+    sample.wi = choose < share ? sample_lobe(p, wo, u) : Frame(p.normal).to_world(cosine_hemisphere(u));
+    sample.wi = glm::normalize(sample.wi);
+    const BrdfValue value = evaluate_brdf_and_pdf(p, wo, sample.wi);
+    sample.pdf = value.pdf;
+    if (value.pdf > 0.0f) sample.weight = value.value * (std::fmax(0.0f, glm::dot(p.normal, sample.wi)) / value.pdf);
+    return sample;
+}
+
+}  // namespace interreflect

@@ -1,0 +1,214 @@
+#include "shading/emitters.h"
+
+#include <algorithm>
+#include <tuple>
+
+#include "math/sampling.h"
+#include "shading/lights.h"
+#include "shading/spherical_triangle.h"
+#include "shading/table.h"
+#include "visibility/surface.h"
+
+namespace interreflect {
+namespace {
+
+// Up to so many triangles are weighed anew from every point: their solid angles cost less than the shadow ray they save.
+constexpr std::size_t most_weighed = 8;
+// Below this solid angle a triangle is sampled by area: the light varies little over it, and spherical angles lose their digits.
+constexpr float least_solid_angle = 2e-3f;
+constexpr int most_cuts = 64;
+
+/// The corner of a piece and its shape, in units of 1 / cuts of barycentric coordinates.
+struct Piece {
+    vec2 corner;
+    float sign;  // 1: along both edges; -1: the mirrored pieces between them
+};
+/// Pieces go row by row along the first edge; row i has cuts - i upright pieces with mirrored ones between them.
+Piece piece_at(std::uint32_t index, int cuts) {
+    int i = 0;
+    auto left = static_cast<int>(index);
+    while (left >= 2 * (cuts - i) - 1) left -= 2 * (cuts - i) - 1, ++i;
+    const int j = left / 2;
+    if (left % 2 == 0) return {{static_cast<float>(i), static_cast<float>(j)}, 1.0f};
+    return {{static_cast<float>(i + 1), static_cast<float>(j + 1)}, -1.0f};
+}
+std::uint32_t piece_of(const vec2& barycentric, int cuts) {
+    if (cuts == 1) return 0;
+    const float n = static_cast<float>(cuts);
+    const int i = std::clamp(static_cast<int>(barycentric.x * n), 0, cuts - 1);
+    const int j = std::clamp(static_cast<int>(barycentric.y * n), 0, cuts - 1 - i);
+    const float u = barycentric.x * n - static_cast<float>(i), v = barycentric.y * n - static_cast<float>(j);
+    const int mirrored = u + v > 1.0f && j < cuts - 1 - i ? 1 : 0;
+    return static_cast<std::uint32_t>(i * (2 * cuts - i) + 2 * j + mirrored);
+}
+vec2 point_in(const Piece& piece, int cuts, const vec2& in_piece) {
+    return (piece.corner + in_piece * piece.sign) / static_cast<float>(cuts);
+}
+
+vec2 texcoord_at(const GeometryArrays& arrays, const uvec3& t, const vec2& b) {
+    return arrays.texcoords[t.x] * (1.0f - b.x - b.y) + arrays.texcoords[t.y] * b.x + arrays.texcoords[t.z] * b.y;
+}
+
+/// So many cuts that a piece spans about two texels.
+int cuts_for(const Texture& map, const GeometryArrays& arrays, const uvec3& t) {
+    const vec2 size(static_cast<float>(map.width()), static_cast<float>(map.height()));
+    const vec2 a = arrays.texcoords[t.x] * size, b = arrays.texcoords[t.y] * size, c = arrays.texcoords[t.z] * size;
+    const float texels = std::max({glm::length(b - a), glm::length(c - a), glm::length(c - b)});
+    return std::clamp(static_cast<int>(texels / 2.0f), 1, most_cuts);
+}
+
+}  // namespace
+
+EmitterSampler::EmitterSampler(const Scene& scene) : scene_(&scene) {
+    for (const Emitter& emitter : scene.emitters) triangles_.push_back(make_triangle(emitter));
+    cdf_.assign(1, 0.0f);
+    for (auto& triangle : triangles_) append_weights(triangle), few_ = few_ || triangle.cuts > 1;
+    const bool light = make_cdf(cdf_) > 0;
+    few_ = !few_ && triangles_.size() <= most_weighed;
+    if (!light) triangles_.clear();
+}
+
+EmitterSampler::Triangle EmitterSampler::make_triangle(const Emitter& emitter) const {
+    const Corners corners = world_corners(*scene_->geometry, emitter.instance, emitter.triangle);
+    Triangle t;
+    t.corner = corners.a, t.edge1 = corners.b - corners.a, t.edge2 = corners.c - corners.a;
+    t.normal = hit_geometry(*scene_->geometry, emitter.instance, emitter.triangle, 0.0f, 0.0f).geometric_normal;
+    t.area = emitter.area;
+    t.instance = emitter.instance, t.triangle = emitter.triangle;
+    t.material = static_cast<int>(scene_->material_of(emitter.triangle));
+    const Material& material = scene_->materials[t.material];
+    t.emission = material.emission, t.map = material.emission_map;
+    const auto& arrays = *scene_->geometry->arrays;
+    if (t.map >= 0) t.cuts = cuts_for(*scene_->textures[t.map], arrays, arrays.triangles[t.triangle]);
+    return t;
+}
+
+void EmitterSampler::append_weights(const Triangle& triangle) {
+    const auto index = static_cast<std::uint32_t>(&triangle - triangles_.data());
+    triangles_[index].first_piece = static_cast<std::uint32_t>(of_piece_.size());
+    const auto pieces = static_cast<std::uint32_t>(triangle.cuts * triangle.cuts);
+    const float piece_area = triangle.area / static_cast<float>(pieces);
+    constexpr int n = 4;  // points along a piece's edge: finer than the texels it spans
+    const auto along = [](int k) { return (static_cast<float>(k) + 1.0f / 3.0f) / n; };
+    const float whole = luminance(scene_->emitters[index].radiance);
+    for (std::uint32_t k = 0; k < pieces; ++k) {
+        float mean = luminance(triangle.emission);
+        if (triangle.map >= 0) {
+            const Piece piece = piece_at(k, triangle.cuts);
+            vec3 sum{0};
+            for (int i = 0; i < n; ++i)
+                for (int j = 0; i + j < n; ++j) sum += radiance(triangle, point_in(piece, triangle.cuts, {along(i), along(j)}));
+            // A tenth by the triangle's mean: a bright point that the pattern missed keeps a density, and so the mean is right.
+            mean = 0.9f * luminance(sum) / (n * (n + 1) / 2) + 0.1f * std::fmax(whole, 1e-3f * luminance(triangle.emission));
+        }
+        cdf_.push_back(mean * piece_area);
+        of_piece_.push_back(index);
+    }
+}
+
+vec3 EmitterSampler::radiance(const Triangle& t, const vec2& barycentric) const {
+    if (t.map < 0) return t.emission;
+    const auto& arrays = *scene_->geometry->arrays;
+    return t.emission * scene_->textures[t.map]->bilinear(texcoord_at(arrays, arrays.triangles[t.triangle], barycentric));
+}
+
+float EmitterSampler::weigh_few(const vec3& position, float* weights, float* angles) const {
+    float sum = 0;
+    for (std::size_t i = 0; i < triangles_.size(); ++i) {
+        const Triangle& t = triangles_[i];
+        const vec3 a = t.corner - position;
+        weights[i] = angles[i] = 0.0f;
+        if (glm::dot(a, t.normal) >= 0.0f) continue;
+        angles[i] = solid_angle(glm::normalize(a), glm::normalize(a + t.edge1), glm::normalize(a + t.edge2));
+        weights[i] = angles[i] * luminance(t.emission);
+        sum += weights[i];
+    }
+    return sum;
+}
+
+LightDirection EmitterSampler::sample(const vec3& position, float choose, const vec2& u) const {
+    if (triangles_.empty()) return {};
+    return few_ ? sample_few(position, choose, u) : sample_many(position, choose, u);
+}
+
+LightDirection EmitterSampler::sample_few(const vec3& position, float choose, const vec2& u) const {
+    float weights[most_weighed], angles[most_weighed];
+    const float sum = weigh_few(position, weights, angles);
+    if (!(sum > 0.0f)) return {};
+    float left = choose * sum;
+    std::size_t i = 0, last = 0;
+    for (; i < triangles_.size(); ++i) {
+        if (weights[i] <= 0.0f) continue;
+        last = i;
+        if (left < weights[i]) break;
+        left -= weights[i];
+    }
+    i = last;
+    const Triangle& t = triangles_[i];
+    const vec3 a = t.corner - position;
+    LightDirection light;
+    light.radiance = t.emission;
+    if (angles[i] < least_solid_angle) {
+        const vec2 b = uniform_triangle(u);
+        const vec3 to = a + t.edge1 * b.x + t.edge2 * b.y;
+        light.distance = glm::length(to);
+        light.direction = to / light.distance;
+        light.pdf = light.distance * light.distance / (t.area * -glm::dot(light.direction, t.normal));
+    } else {
+        light.direction =
+            sample_spherical_triangle(glm::normalize(a), glm::normalize(a + t.edge1), glm::normalize(a + t.edge2), u);
+        light.distance = glm::dot(a, t.normal) / glm::dot(light.direction, t.normal);
+        light.pdf = 1.0f / angles[i];
+    }
+    light.pdf *= weights[i] / sum;
+    // Rounding can turn a direction at the rim of a triangle seen edge-on past its plane.
+    if (!(light.distance > 0.0f) || !std::isfinite(light.distance) || !std::isfinite(light.pdf)) return {};
+    return light;
+}
+
+LightDirection EmitterSampler::sample_many(const vec3& position, float choose, const vec2& u) const {
+    const auto piece_index = static_cast<std::uint32_t>(choose_entry(cdf_, choose).index);
+    const Triangle& t = triangles_[of_piece_[piece_index]];
+    const vec2 b = point_in(piece_at(piece_index - t.first_piece, t.cuts), t.cuts, uniform_triangle(u));
+    const vec3 to = t.corner + t.edge1 * b.x + t.edge2 * b.y - position;
+    LightDirection light;
+    light.distance = glm::length(to);
+    light.direction = to / light.distance;
+    const float cosine = -glm::dot(light.direction, t.normal);
+    if (!(cosine > 0.0f) || !(light.distance > 0.0f)) return {};
+    light.radiance = radiance(t, b);
+    const float pieces = static_cast<float>(t.cuts) * static_cast<float>(t.cuts);
+    light.pdf = (cdf_[piece_index + 1] - cdf_[piece_index]) * pieces * light.distance * light.distance / (t.area * cosine);
+    return light;
+}
+
+const EmitterSampler::Triangle* EmitterSampler::find(const Hit& hit) const {
+    const auto key = std::make_tuple(hit.instance, hit.triangle);
+    const auto found = std::lower_bound(triangles_.begin(), triangles_.end(), key, [](const Triangle& t, const auto& k) {
+        return std::make_tuple(t.instance, t.triangle) < k;
+    });
+    if (found == triangles_.end() || std::make_tuple(found->instance, found->triangle) != key) return nullptr;
+    return &*found;
+}
+
+float EmitterSampler::pdf(const Hit& hit, const vec3& position, const vec3& direction) const {
+    const Triangle* t = find(hit);
+    if (t == nullptr) return 0.0f;
+    const float cosine = -glm::dot(direction, t->normal);
+    if (!(cosine > 0.0f)) return 0.0f;
+    const auto by_area = [&] {
+        const float distance = glm::dot(t->corner - position, t->normal) / -cosine;
+        return distance * distance / (t->area * cosine);
+    };
+    if (few_) {
+        float weights[most_weighed], angles[most_weighed];
+        const float sum = weigh_few(position, weights, angles);
+        const auto i = t - triangles_.data();
+        if (!(weights[i] > 0.0f)) return 0.0f;
+        return weights[i] / sum * (angles[i] < least_solid_angle ? by_area() : 1.0f / angles[i]);
+    }
+    const std::uint32_t piece = t->first_piece + piece_of({hit.u, hit.v}, t->cuts);
+    return (cdf_[piece + 1] - cdf_[piece]) * static_cast<float>(t->cuts) * static_cast<float>(t->cuts) * by_area();
+}
+
+}  // namespace interreflect
