@@ -224,6 +224,9 @@ void bind_data(py::module_& m) {
             const auto b = self.bounds();
             return std::array<Float3, 2>{array3(b.lower), array3(b.upper)};
         });
+}
+
+void bind_scene(py::module_& m) {
     py::class_<BoundScene, std::shared_ptr<BoundScene>>(m, "Scene")
         .def(py::init([](std::shared_ptr<Geometry> geometry, std::shared_ptr<Intersector> intersector,
                          std::vector<Material> materials, std::vector<std::shared_ptr<Texture>> textures,

@@ -32,4 +32,5 @@ PYBIND11_MODULE(_core, m) {
         .def("__exit__", [](Threads& self, const py::args&) { thread_limit() = self.before; });
     bind_data(m);
     bind_visibility(m);
+    bind_scene(m);
 }

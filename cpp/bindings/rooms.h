@@ -19,6 +19,8 @@ struct BoundScene {
 };
 
 void bind_data(py::module_& m);
+/// Scenes are bound after the ray hierarchy that they hold.
+void bind_scene(py::module_& m);
 void bind_visibility(py::module_& m);
 
 }  // namespace interreflect::bindings
