@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 
@@ -27,7 +27,7 @@ class ConstantAmbient(Method):
     shadow: Any = stage(_core.TracedShadows())
     sky: Any = stage(_core.TracedSky())
 
-    bounces: ClassVar[int | None] = 1
+    bounces = 1
 
     def compose(self, view: View, profile: Profile) -> tuple[Image, Image]:
         with profile.stage("gbuffer") as note:

@@ -9,7 +9,7 @@ import time
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, ClassVar, TypeVar, dataclass_transform
+from typing import Any, TypeVar, dataclass_transform
 
 from interreflect import _core
 from interreflect.frame import Frame, Image
@@ -27,7 +27,7 @@ def method(cls: type[Self]) -> type[Self]:
     """Makes a class a method: a frozen, keyword-only dataclass whose unknown knobs are a TypeError with the nearest name."""
     made = dataclasses.dataclass(frozen=True, kw_only=True)(cls)
     plain = made.__init__
-    names = [field.name for field in dataclasses.fields(made)]
+    names = [field.name for field in dataclasses.fields(made)]  # type: ignore[arg-type]
 
     @functools.wraps(plain)
     def __init__(self: Self, *wrong: Any, **given: Any) -> None:
@@ -38,15 +38,17 @@ def method(cls: type[Self]) -> type[Self]:
                 raise unknown(cls.__name__, name, names)
         plain(self, **given)
 
-    made.__init__ = __init__  # type: ignore[method-assign]
+    made.__init__ = __init__  # type: ignore[method-assign, assignment]
     return made
 
 
 class Method(ABC):
     """A composition of stages. Subclasses are made by `@method`, fields are knobs; `bounces` is the transport they aim at."""
 
-    bounces: int | None  # most indirect bounces that the method's picture holds; None: all. A field or a class attribute
-    presets: ClassVar[tuple[str, ...]] = ()
+    @property
+    def bounces(self) -> int | None:
+        """Most indirect bounces that the method's picture holds; None: all. A constant of the class, or a knob."""
+        raise NotImplementedError(f"{type(self).__name__} must say how many bounces it renders")
 
     def __post_init__(self) -> None:
         for field in dataclasses.fields(self):  # type: ignore[arg-type]
