@@ -29,7 +29,8 @@ PYBIND11_MODULE(_core, m) {
              }),
              py::arg("limit") = py::none())
         .def("__enter__", [](Threads& self) { self.before = thread_limit(), thread_limit() = self.limit; })
-        .def("__exit__", [](Threads& self, const py::object&, const py::object&, const py::object&) { thread_limit() = self.before; });
+        .def("__exit__",
+             [](Threads& self, const py::object&, const py::object&, const py::object&) { thread_limit() = self.before; });
     bind_data(m);
     bind_visibility(m);
     bind_scene(m);

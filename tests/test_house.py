@@ -1,0 +1,57 @@
+"""Rules of the house that a machine can check: rooms, quick imports, stubs, length of files."""
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+CORE = ROOT / "cpp" / "interreflect"
+# A room includes only itself and rooms above it (DESIGN.md); the last four never know each other.
+ABOVE = {
+    "data": {"math"},
+    "math": {"data"},
+    "visibility": {"data", "math"},
+    "shading": {"data", "math", "visibility"},
+    "voxels": {"data", "math", "visibility", "shading"},
+    "direct": {"data", "math", "visibility", "shading", "voxels"},
+    "reference": {"data", "math", "visibility", "shading", "voxels", "direct"},
+}
+
+
+def test_a_room_includes_only_rooms_above_it():
+    sources = [path for path in CORE.rglob("*.[hc]*") if path.is_file()]
+    assert len(sources) > 20
+    for source in sources:
+        room = source.relative_to(CORE).parts[0]
+        for included in re.findall(r'#include "([a-z_]+)/', source.read_text()):
+            assert included == room or included in ABOVE[room], f"{source.relative_to(ROOT)} includes {included}/"
+
+
+def test_only_visibility_knows_the_ray_library():
+    for source in CORE.rglob("*.[hc]*"):
+        if source.relative_to(CORE).parts[0] != "visibility":
+            assert "embree" not in source.read_text().lower(), source
+
+
+def test_no_file_is_longer_than_400_lines():
+    tracked = subprocess.run(["git", "ls-files"], cwd=ROOT, capture_output=True, text=True, check=True).stdout.split()
+    long = {name: n for name in tracked if name.endswith((".py", ".h", ".cpp")) and (n := len((ROOT / name).read_text().splitlines())) > 400}
+    assert not long
+
+
+@pytest.mark.parametrize("heavy", ["pandas", "matplotlib", "OpenImageIO", "trimesh", "scipy", "skimage", "interreflect._core"])
+def test_import_loads_nothing_heavy(heavy):
+    """What makes `import interreflect` and `--help` quick; their times stand in the benchmarks."""
+    code = f"import sys, interreflect, interreflect.cli; sys.exit({heavy!r} in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+def test_the_stub_describes_the_module():
+    pytest.importorskip("pybind11_stubgen", reason="needs the extra `dev`")
+    sys.path.insert(0, str(ROOT / "tools"))
+    from stubs import make_stub
+
+    assert (ROOT / "python" / "interreflect" / "_core.pyi").read_text() == make_stub(), "run ./run stubs"
