@@ -66,7 +66,7 @@ def speed_accuracy(records: Records, x: str = "milliseconds", y: str = "relmse",
         ax.scatter(best[x], best[y], s=110, facecolors="none", edgecolors=_theme(dark)["ink"], linewidths=0.8, zorder=4)
         _name_points(ax, best.head(NAMED_POINTS), x, y, _varied(records), dark)
         _noise_band(ax, rows, y, dark)
-        ax.set_title(_view_title(view), fontsize=9)
+        ax.set_title(view_title(view), fontsize=9)
         ax.set(xlabel=LABELS[x], ylabel=LABELS[y])
     _legend(figure, axes, dark)
     return figure
@@ -96,7 +96,7 @@ def stages(records: Records, dark: bool = False) -> Figure:
             left += width
         ax.set_yticks(places, [_knobs(row, varied) or str(group[-1]) for _, row in rows.iterrows()])
         ax.invert_yaxis()
-        ax.set_title(f"{group[-1]}: {_view_title(group[:-1])}", fontsize=9)
+        ax.set_title(f"{group[-1]}: {view_title(group[:-1])}", fontsize=9)
         ax.set(xlabel=LABELS["milliseconds"])
         ax.grid(axis="y", visible=False)
     _legend(figure, axes, dark)
@@ -109,7 +109,7 @@ def images(records: Records, limit: int = 6, dark: bool = False) -> Figure:
     Shown are every method's most accurate configuration and those on the front, at most `limit` a view. Tone-mapped with the
     truth's exposure (`metrics.tone_map`); error maps share one logarithmic scale. ValueError if no pictures were kept.
     """
-    shown = [(view, picked) for view, picked in _pictured(records, limit) if picked]
+    shown = [(view, picked) for view, picked in pictured(records, limit) if picked]
     if not shown:
         raise ValueError(f"study {records.study!r} has no pictures to show")
     columns = 1 + max(len(picked) for _, picked in shown)
@@ -120,11 +120,11 @@ def images(records: Records, limit: int = 6, dark: bool = False) -> Figure:
         upper, lower = grid[2 * row], grid[2 * row + 1]
         truth = records.truth(picked[0])[0]
         upper[0].imshow(metrics.tone_map(truth, truth))
-        upper[0].set_title(f"truth, relMSE {picked[0].noise:.1e}\n{_view_title(view)}", fontsize=8)
+        upper[0].set_title(f"truth, relMSE {picked[0].noise:.1e}\n{view_title(view)}", fontsize=8)
         for ax, below, record in zip(upper[1:], lower[1:], picked, strict=False):
             image = records.images(record)[0]
             ax.imshow(metrics.tone_map(image, truth))
-            ax.set_title(f"{record.method} {_knobs(record.row(), _varied(records))}\n{record.milliseconds:.3g} ms", fontsize=8)
+            ax.set_title(f"{label(records, record.row())}\n{record.milliseconds:.3g} ms", fontsize=8)
             mapped = below.imshow(metrics.error_map(image, truth), cmap="magma", norm=_error_norm())
             below.set_title(f"relMSE {record.metrics['relmse']:.2e}", fontsize=8)
     for ax in grid.flat:
@@ -137,7 +137,7 @@ def images(records: Records, limit: int = 6, dark: bool = False) -> Figure:
     return figure
 
 
-def _pictured(records: Records, limit: int) -> list[tuple[tuple[Any, ...], list[Record]]]:
+def pictured(records: Records, limit: int) -> list[tuple[tuple[Any, ...], list[Record]]]:
     """Per view, the records whose pictures are worth showing, fast to slow: every method's most accurate, then those on the front."""
     first: dict[tuple[Any, ...], Record] = {}
     for record in records:
@@ -231,9 +231,14 @@ def _noise_band(ax: Axes, rows: pd.DataFrame, y: str, dark: bool) -> None:
 def _varied(records: Records) -> dict[str, list[str]]:
     """Method -> the knob columns that differ between its measured records: those that tell its points apart."""
     measured = records.table[records.table["status"] == OK]
-    names = records.knob_columns()
+    names = records.knob_columns
     spread = {method: rows[names].nunique() for method, rows in measured.groupby("method")}
     return {str(method): [name for name in names if counts[name] > 1] for method, counts in spread.items()}
+
+
+def label(records: Records, row: Any) -> str:
+    """The method of a row of the table, with the knobs that tell it from its siblings."""
+    return f"{row['method']} {_knobs(row, _varied(records))}".strip()
 
 
 def _knobs(row: Any, varied: Mapping[str, Sequence[str]]) -> str:
@@ -253,7 +258,7 @@ def _name_points(ax: Axes, rows: pd.DataFrame, x: str, y: str, varied: Mapping[s
         ax.annotate(text, (row[x], row[y]), xytext=(7, 5), textcoords="offset points", fontsize=6.5, color=_theme(dark)["ink"])
 
 
-def _view_title(view: Any) -> str:
+def view_title(view: Any) -> str:
     scene, camera, bounces = view
     return f"{scene}, {camera}, {'all bounces' if bounces == 'all' else f'bounces={bounces}'}"
 

@@ -27,6 +27,7 @@ NOISE_OF = {  # an error that the truth's noise bounds -> the column that holds 
 ERRORS = (*NOISE_OF, "flip")
 MERIT = "ssim"  # better where larger
 WITHIN_NOISE = "within noise"
+PER_SEED = ("seed", "status", "failure", "key")  # columns of cells that configurations do not have
 
 
 def configurations(records: Records) -> pd.DataFrame:
@@ -34,20 +35,15 @@ def configurations(records: Records) -> pd.DataFrame:
 
     Cells that failed or are not finite are left out, and so are configurations of which any seed did.
     """
-    import pandas as pd
-
-    table = records.table.copy()
-    table["configuration"] = [record.configuration for record in records]
-    rows = []
-    for _, group in table.groupby([*VIEW, "configuration"], sort=False, dropna=False):
-        if (group["status"] != OK).any():
-            continue
-        row = group.iloc[0].drop(["seed", "status", "failure", "key"]).to_dict()
-        measured = [name for name in group.columns if name not in records.knob_columns() and _is_measured(name)]
-        row |= {name: group[name].median() if "milliseconds" in name else group[name].mean() for name in measured}
-        rows.append(row | {"seeds": len(group)})
-    columns = [name for name in table.columns if name not in ("seed", "status", "failure", "key")]
-    return pd.DataFrame(rows, columns=[*columns, "seeds"])
+    by = [*VIEW, "configuration"]
+    table = records.table.assign(configuration=[record.configuration for record in records])
+    failed = table.assign(failed=table["status"] != OK).groupby(by, sort=False)["failed"].transform("any")
+    kept = table[~failed.astype(bool)].drop(columns=list(PER_SEED))
+    measured = [name for name in kept.columns if name not in records.knob_columns and _is_measured(name)]
+    how = dict.fromkeys(kept.columns.difference(by, sort=False), "first")
+    how |= {name: "median" if "milliseconds" in name else "mean" for name in measured}
+    grouped = kept.astype(dict.fromkeys(measured, float)).groupby(by, sort=False)
+    return grouped.agg(how).assign(seeds=grouped.size()).reset_index()
 
 
 def pareto(records: Records, x: str = "milliseconds", y: str = "relmse") -> pd.DataFrame:

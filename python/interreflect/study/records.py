@@ -116,6 +116,7 @@ class Records(Sequence[Record]):
         columns = dict.fromkeys([*FIXED, *(name for row in rows for name in row)])
         return pd.DataFrame(rows, columns=list(columns))
 
+    @cached_property
     def knob_columns(self) -> list[str]:
         """The table's columns that are knobs."""
         return list(dict.fromkeys(knob_column(name) for record in self.records for name in record.knobs))

@@ -1,0 +1,155 @@
+"""The command line. Heavy imports stay inside the commands, so that help comes at once; a user's error is one line and exit code 2."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+app = typer.Typer(
+    name="interreflect",
+    help="A laboratory for real-time global illumination: methods against truth, speed against accuracy.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+)
+cache_app = typer.Typer(help="What is kept on disk: scenes, references, precomputations.", no_args_is_help=True)
+app.add_typer(cache_app, name="cache")
+
+USER_ERRORS = (ValueError, TypeError, OSError, ImportError)  # what wrong input raises; all else is a fault of ours and shows its traceback
+
+
+def main() -> None:
+    """The entry point: runs a command; what a user did wrong is said in one line on standard error, with exit code 2."""
+    try:
+        app()
+    except KeyboardInterrupt:
+        print("interreflect: interrupted; a study goes on where it stopped when it is run again", file=sys.stderr)
+        sys.exit(130)
+    except USER_ERRORS as error:
+        print(f"interreflect: {type(error).__name__}: {' '.join(str(error).split())}", file=sys.stderr)
+        sys.exit(2)
+
+
+@app.command()
+def scenes() -> None:
+    """List the built-in scenes with their knobs."""
+    from interreflect.catalogue import scene_rows
+
+    _print_table("scene", scene_rows())
+
+
+@app.command()
+def methods() -> None:
+    """List the methods with their stages and knobs."""
+    from interreflect.catalogue import method_rows
+
+    _print_table("method", method_rows())
+
+
+@app.command()
+def techniques(stage: Annotated[str | None, typer.Argument(help="one stage only")] = None) -> None:
+    """List the techniques of every stage with their knobs."""
+    from interreflect.catalogue import technique_rows
+
+    _print_table("technique", technique_rows(stage))
+
+
+@app.command()
+def render(
+    scene: Annotated[str, typer.Argument(help="a scene file, or the name of a built-in scene")],
+    method: Annotated[str, typer.Option(help="a method's name, as `interreflect methods` lists them")] = "voxel-cone-tracing",
+    set_: Annotated[list[str] | None, typer.Option("--set", help="a knob: path=value, e.g. grid.resolution=64; repeatable")] = None,
+    camera: Annotated[str | None, typer.Option(help="a camera's name; the scene's first if absent")] = None,
+    size: Annotated[str, typer.Option(help="width x height in pixels")] = "640x360",
+    seed: Annotated[int, typer.Option(help="seed of the random numbers")] = 0,
+    threads: Annotated[int | None, typer.Option(help="threads; all if absent")] = None,
+    output: Annotated[Path, typer.Option("-o", "--output", help="an image file; .exr and .hdr keep linear light")] = Path("frame.exr"),
+) -> None:
+    """Render one picture and say where the time went."""
+    from interreflect.catalogue import find_method, find_scene, parse_knobs, parse_size
+
+    world = find_scene(scene)
+    chosen = find_method(method).replace(parse_knobs(set_ or []))
+    for warning in world.warnings:
+        print(f"warning: {warning}", file=sys.stderr)
+    frame = chosen.render(world, camera=camera, size=parse_size(size), seed=seed, threads=threads)
+    frame.save(output)
+    print(frame.profile)
+    print(f"wrote {output}")
+
+
+@app.command()
+def study(
+    file: Annotated[Path, typer.Argument(help="a Python file that defines `study`")],
+    out: Annotated[Path, typer.Option(help="the folder of the records; a study that stopped goes on there")],
+) -> None:
+    """Measure a study: every cell that its folder does not hold yet."""
+    from interreflect.catalogue import load_study
+    from interreflect.study.pareto import pareto
+    from interreflect.study.records import OK
+    from interreflect.study.run import run
+
+    records = run(load_study(file), out)
+    failed = [record for record in records if record.status != OK]
+    front = pareto(records)
+    columns = ["scene", "camera", "bounces", "configuration", "milliseconds", "relmse", "note"]
+    _print_rows("on the front", columns, [[_text(row[name]) for name in columns] for _, row in front.iterrows()])
+    for record in failed:
+        print(f"{record.status}: {record.scene}, {record.configuration}, seed {record.seed}: {record.failure}", file=sys.stderr)
+    print(f"{len(records)} cells in {out}, {len(failed)} failed")
+
+
+@app.command()
+def report(
+    folder: Annotated[Path, typer.Argument(help="the folder of a study's records")],
+    output: Annotated[Path, typer.Option("-o", "--output", help="the HTML file to write")] = Path("report.html"),
+) -> None:
+    """Write one self-contained page from a study's records."""
+    from interreflect.study.report import report as write_report
+    from interreflect.study.store import load_records
+
+    print(f"wrote {write_report(load_records(folder), output)}")
+
+
+@cache_app.command("list")
+def cache_list() -> None:
+    """List what the cache holds."""
+    from interreflect import cache
+
+    rows = [[entry.kind, entry.key, f"{entry.bytes / 2**20:.1f}"] for entry in cache.entries()]
+    _print_rows(f"cache in {cache.folder()}", ["kind", "key", "MiB"], rows)
+
+
+@cache_app.command("clear")
+def cache_clear() -> None:
+    """Remove everything from the cache."""
+    from interreflect import cache
+
+    print(f"removed {cache.clear()} files from {cache.folder()}")
+
+
+def _print_table(what: str, rows: list[tuple[str, ...]]) -> None:
+    _print_rows("", [what, "knob", "type", "unit", "range", "default", "meaning"], [list(row) for row in rows])
+
+
+def _print_rows(title: str, columns: list[str], rows: list[list[str]]) -> None:
+    from rich.console import Console
+    from rich.table import Table
+    from rich.text import Text
+
+    table = Table(title=title or None, title_justify="left")
+    for name in columns:
+        table.add_column(name, overflow="fold")
+    for row in rows:
+        table.add_row(*(Text(cell) for cell in row))
+    console = Console()
+    if not console.is_terminal:
+        console.width = 200  # pipes and files have no width of their own
+    console.print(table)
+
+
+def _text(value: Any) -> str:
+    return f"{value:.4g}" if isinstance(value, float) else str(value)
