@@ -10,6 +10,7 @@ import subprocess
 import sys
 import tempfile
 from pathlib import Path
+from typing import ClassVar
 
 from interreflect import _core
 
@@ -46,7 +47,7 @@ def technique_class(name: str) -> ast.stmt:
 class Typed(ast.NodeTransformer):
     """Bare generics get their arguments, so that `mypy --strict` accepts them."""
 
-    ARGUMENTS = {"dict": "dict[str, typing.Any]", "list": "list[typing.Any]", "tuple": "tuple[typing.Any, ...]"}
+    ARGUMENTS: ClassVar = {"dict": "dict[str, typing.Any]", "list": "list[typing.Any]", "tuple": "tuple[typing.Any, ...]"}
 
     def visit_Subscript(self, node: ast.Subscript) -> ast.AST:
         node.slice = self.visit(node.slice)

@@ -33,5 +33,6 @@ PYBIND11_MODULE(_core, m) {
              [](Threads& self, const py::object&, const py::object&, const py::object&) { thread_limit() = self.before; });
     bind_data(m);
     bind_visibility(m);
+    bind_reference(m);
     bind_scene(m);
 }

@@ -11,7 +11,7 @@
 namespace interreflect::bindings {
 namespace py = pybind11;
 
-/// What Python holds as a scene: the plain data the hierarchy over it and its lights.
+/// What Python holds as a scene: the plain data, the hierarchy over it and its lights.
 struct BoundScene {
     Scene scene;
     std::shared_ptr<const Intersector> intersector;
@@ -22,5 +22,6 @@ void bind_data(py::module_& m);
 /// Scenes are bound after the ray hierarchy that they hold.
 void bind_scene(py::module_& m);
 void bind_visibility(py::module_& m);
+void bind_reference(py::module_& m);
 
 }  // namespace interreflect::bindings

@@ -198,6 +198,38 @@ class GBuffer:
     @property
     def width(self) -> int:
         ...
+class PathTraced:
+    """
+    Radiance of every pixel, W/(m^2 sr): read-only (height, width, 3) views.
+    """
+
+    @property
+    def bytes(self) -> int:
+        """
+        Memory the images hold.
+        """
+
+    @property
+    def counts(self) -> Counts:
+        ...
+
+    @property
+    def direct(self) -> numpy.typing.NDArray[numpy.float32]:
+        """
+        Emission, the environment seen directly, and light reflected once.
+        """
+
+    @property
+    def indirect(self) -> numpy.typing.NDArray[numpy.float32]:
+        """
+        Light reflected more than once.
+        """
+
+    @property
+    def samples(self) -> int:
+        """
+        Paths that every pixel got.
+        """
 class Scene:
 
     def __init__(self, geometry: Geometry, intersector: Intersector, materials: collections.abc.Sequence[Material], textures: collections.abc.Sequence[Texture], masks: collections.abc.Sequence[Mask], lights: list[typing.Any], environment: Environment | None=None) -> None:
@@ -205,6 +237,10 @@ class Scene:
 def _rebuild(arg0: typing.Any, arg1: dict[str, typing.Any]) -> typing.Any:
     """
     Makes a technique again from its knobs (pickle).
+    """
+def path_trace(scene: ..., camera: Camera, width: typing.SupportsInt | typing.SupportsIndex, height: typing.SupportsInt | typing.SupportsIndex, *, samples: typing.SupportsInt | typing.SupportsIndex=1, milliseconds: typing.SupportsFloat | typing.SupportsIndex | None=None, bounces: typing.SupportsInt | typing.SupportsIndex | None=1, pixel: str='centre', pattern: typing.SupportsInt | typing.SupportsIndex=8, seed: typing.SupportsInt | typing.SupportsIndex=0) -> PathTraced:
+    """
+    Path tracing with exactly `bounces` indirect bounces (None: all); `samples` paths a pixel, fewer where `milliseconds` end sooner.
     """
 def trace_gbuffer(scene: ..., camera: Camera, width: typing.SupportsInt | typing.SupportsIndex, height: typing.SupportsInt | typing.SupportsIndex) -> GBuffer:
     """

@@ -13,7 +13,7 @@ namespace interreflect {
 namespace {
 
 // Up to so many triangles are weighed anew from every point: their solid angles cost less than the shadow ray they save.
-constexpr std::size_t most_weighed = 8;
+constexpr std::size_t most_weighed = 16;
 // Below this solid angle a triangle is sampled by area: the light varies little over it, and spherical angles lose their digits.
 constexpr float least_solid_angle = 2e-3f;
 constexpr int most_cuts = 64;
@@ -62,7 +62,7 @@ int cuts_for(const Texture& map, const GeometryArrays& arrays, const uvec3& t) {
 EmitterSampler::EmitterSampler(const Scene& scene) : scene_(&scene) {
     for (const Emitter& emitter : scene.emitters) triangles_.push_back(make_triangle(emitter));
     cdf_.assign(1, 0.0f);
-    for (auto& triangle : triangles_) append_weights(triangle), few_ = few_ || triangle.cuts > 1;
+    for (auto& triangle : triangles_) append_weights(triangle), few_ = few_ || triangle.cuts > 1 || triangle.mask >= 0;
     const bool light = make_cdf(cdf_) > 0;
     few_ = !few_ && triangles_.size() <= most_weighed;
     if (!light) triangles_.clear();
@@ -77,7 +77,7 @@ EmitterSampler::Triangle EmitterSampler::make_triangle(const Emitter& emitter) c
     t.instance = emitter.instance, t.triangle = emitter.triangle;
     t.material = static_cast<int>(scene_->material_of(emitter.triangle));
     const Material& material = scene_->materials[t.material];
-    t.emission = material.emission, t.map = material.emission_map;
+    t.emission = material.emission, t.map = material.emission_map, t.mask = material.mask;
     const auto& arrays = *scene_->geometry->arrays;
     if (t.map >= 0) t.cuts = cuts_for(*scene_->textures[t.map], arrays, arrays.triangles[t.triangle]);
     return t;
@@ -107,9 +107,11 @@ void EmitterSampler::append_weights(const Triangle& triangle) {
 }
 
 vec3 EmitterSampler::radiance(const Triangle& t, const vec2& barycentric) const {
-    if (t.map < 0) return t.emission;
+    if (t.map < 0 && t.mask < 0) return t.emission;
     const auto& arrays = *scene_->geometry->arrays;
-    return t.emission * scene_->textures[t.map]->bilinear(texcoord_at(arrays, arrays.triangles[t.triangle], barycentric));
+    const vec2 texcoord = texcoord_at(arrays, arrays.triangles[t.triangle], barycentric);
+    if (t.mask >= 0 && !scene_->masks[t.mask]->solid(texcoord)) return vec3(0);
+    return t.map < 0 ? t.emission : t.emission * scene_->textures[t.map]->bilinear(texcoord);
 }
 
 float EmitterSampler::weigh_few(const vec3& position, float* weights, float* angles) const {

@@ -16,6 +16,7 @@ class EmitterSampler {
     explicit EmitterSampler(const Scene& scene);
 
     bool empty() const { return triangles_.empty(); }
+    bool many() const { return !triangles_.empty() && !few_; }
     LightDirection sample(const vec3& position, float choose, const vec2& u) const;
     float pdf(const Hit& hit, const vec3& position, const vec3& direction) const;
 
@@ -24,7 +25,7 @@ class EmitterSampler {
         vec3 corner, edge1, edge2, normal;  // world space; the normal of the side that emits
         float area = 0;
         vec3 emission{0};  // before the map
-        int map = -1, material = 0;
+        int map = -1, mask = -1, material = 0;
         std::uint32_t instance = 0, triangle = 0;
         std::uint32_t first_piece = 0;
         int cuts = 1;  // pieces along an edge

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "data/environment.h"
 #include "math/sampling.h"
 #include "shading/table.h"
 
@@ -48,18 +49,7 @@ int EnvironmentSampler::column_of(const vec3& local) const {
 }
 
 vec3 EnvironmentSampler::radiance(const vec3& direction) const {
-    if (environment_ == nullptr) return vec3(0);
-    const int w = environment_->width, h = environment_->height;
-    if (w == 0) return environment_->radiance;
-    const vec3 local = direction * environment_->world_from_light;  // the transpose turns world into light space
-    const float u = 0.5f + std::atan2(local.x, -local.z) / (2.0f * pi);
-    const float v = std::acos(std::clamp(local.y, -1.0f, 1.0f)) / pi;
-    const float x = u * static_cast<float>(w) - 0.5f, y = v * static_cast<float>(h) - 0.5f;
-    const float fx = std::floor(x), fy = std::floor(y);
-    const int x0 = (static_cast<int>(fx) + w) % w, x1 = (x0 + 1) % w;
-    const int y0 = std::clamp(static_cast<int>(fy), 0, h - 1), y1 = std::clamp(static_cast<int>(fy) + 1, 0, h - 1);
-    const vec3 upper = glm::mix(texel(x0, y0), texel(x1, y0), x - fx), lower = glm::mix(texel(x0, y1), texel(x1, y1), x - fx);
-    return environment_->radiance * glm::mix(upper, lower, y - fy);
+    return environment_ == nullptr ? vec3(0) : environment_radiance(*environment_, direction);
 }
 
 vec3 EnvironmentSampler::sample(const vec2& u) const {

@@ -38,6 +38,8 @@ class LightSampler {
     bool has_emitters() const { return !emitters_.empty(); }
     /// Few emitters: in proportion to luminance times solid angle, and uniform in the solid angle of the chosen one. Many: in
     /// proportion to luminance times area, emission maps included, and uniform in area. `choose` and `u` are uniform in [0, 1).
+    /// Many emitters sampled by area: near one of them the weight has no bound, unless a reflection's ray shares the work.
+    bool emitters_are_many() const { return emitters_.many(); }
     Area sample_emitter(const vec3& position, float choose, const vec2& u) const { return emitters_.sample(position, choose, u); }
     /// Density of sample_emitter from `position` for the emitter point that a ray along `direction` hit.
     float emitter_pdf(const Hit& hit, const vec3& position, const vec3& direction) const {

@@ -13,17 +13,6 @@ namespace {
 constexpr int tile_size = 16, packet_side = 4;
 constexpr int packet_rays = packet_side * packet_side;
 
-void check_view(const Camera& camera, int width, int height) {
-    constexpr int most = 1 << 15;
-    if (width < 1 || height < 1 || width > most || height > most)
-        throw std::invalid_argument("width and height must lie in [1, " + std::to_string(most) + "], got " +
-                                    std::to_string(width) + " x " + std::to_string(height));
-    const CameraRays rays(camera, width, height);
-    const vec3 sum = rays.origin + rays.corner + rays.right_step + rays.down_step;
-    if (!std::isfinite(sum.x + sum.y + sum.z) || !(camera.fov_x > 0.0f && camera.fov_x < 180.0f))
-        throw std::invalid_argument("camera: position, target and up must be finite and not in line, 0 < fov_x < 180 degrees");
-}
-
 GBuffer allocate(const Camera& camera, int width, int height) {
     GBuffer g;
     g.width = width;
@@ -97,6 +86,17 @@ void trace_tile(GBuffer& g, const Scene& scene, const Intersector& intersector, 
 }
 
 }  // namespace
+
+void check_view(const Camera& camera, int width, int height) {
+    constexpr int most = 1 << 15;
+    if (width < 1 || height < 1 || width > most || height > most)
+        throw std::invalid_argument("width and height must lie in [1, " + std::to_string(most) + "], got " +
+                                    std::to_string(width) + " x " + std::to_string(height));
+    const CameraRays rays(camera, width, height);
+    const vec3 sum = rays.origin + rays.corner + rays.right_step + rays.down_step;
+    if (!std::isfinite(sum.x + sum.y + sum.z) || !(camera.fov_x > 0.0f && camera.fov_x < 180.0f))
+        throw std::invalid_argument("camera: position, target and up must be finite and not in line, 0 < fov_x < 180 degrees");
+}
 
 Footprint pixel_footprint(const Scene& scene, const Hit& hit, const CameraRays& rays, float x, float y) {
     const auto& arrays = *scene.geometry->arrays;

@@ -11,6 +11,9 @@ namespace interreflect {
 /// Throws std::invalid_argument where the camera or the size makes no picture.
 GBuffer trace_gbuffer(const Scene& scene, const Intersector& intersector, const Camera& camera, int width, int height);
 
+/// Throws std::invalid_argument where the camera or the size makes no picture.
+void check_view(const Camera& camera, int width, int height);
+
 /// How far texture coordinates move from one pixel to the next at a hit of the primary ray through (x, y) (pixel centres at
 /// + 0.5). Pass it to surface_at for the same surface as the G-buffer's.
 Footprint pixel_footprint(const Scene& scene, const Hit& hit, const CameraRays& rays, float x, float y);

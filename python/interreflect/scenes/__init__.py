@@ -6,7 +6,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-
+    from interreflect.scenes.builtin.atrium import atrium as atrium
     from interreflect.scenes.builtin.closed_forms import closed_form as closed_form
     from interreflect.scenes.builtin.cornell_box import cornell_box as cornell_box
     from interreflect.scenes.builtin.corridors import corridors as corridors
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from interreflect.scenes.builtin.thin_wall import thin_wall as thin_wall
 
 _MODULES = {
+    "atrium": "atrium",
     "closed_form": "closed_forms",
     "cornell_box": "cornell_box",
     "corner": "squares",
