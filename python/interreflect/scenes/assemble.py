@@ -119,7 +119,8 @@ class _Builder:
             if name not in own and name not in over:
                 known = [n for n in (*own, *over) if n != "*"]
                 hint = nearest_name(name, known) if known else ""
-                raise SceneError(f"{geometry.where}.file: {shown(geometry.file)}: material {name!r} is not defined{hint}")
+                where = f"{shown(geometry.file)}: material" if geometry.material is None else f"{geometry.where}.material"
+                raise SceneError(f"{where} {name!r} is not defined{hint}")
             keys = _merged(keys, own.get(name, {}))
         keys = _merged(keys, over.get("*", {}))
         if name is not None:

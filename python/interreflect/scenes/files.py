@@ -44,7 +44,7 @@ class Folder:
 
     @staticmethod
     def of(path: str) -> Folder:
-        return Folder(os.path.dirname(os.path.abspath(path)))
+        return Folder(os.path.realpath(os.path.dirname(os.path.abspath(path))))
 
     def locate(self, name: object, where: str, beside: str | None = None) -> str | None:
         """Path of `name`, relative to the file `beside` or to the manifest; None where there is no such file.
@@ -58,11 +58,11 @@ class Folder:
             raise SceneError(f"{where} must be a relative path without a scheme, got {shorten(name)}")
         start = os.path.dirname(beside) if beside else self.base
         path = os.path.realpath(os.path.join(start, name))
-        root = os.path.dirname(os.path.realpath(self.base))
+        root = os.path.dirname(self.base)
         if os.path.commonpath([root, path]) != root:
             raise SceneError(f"{where} must not lead above the folder that holds the scene's folder, got {shorten(name)}")
         found = path if os.path.isfile(path) else None
-        self.used[os.path.relpath(os.path.join(start, name), self.base)] = found
+        self.used[os.path.join(os.path.relpath(start, self.base), name)] = found
         return found
 
     def require(self, name: object, where: str, beside: str | None = None) -> str:

@@ -11,6 +11,7 @@ from interreflect.scenes.files import Folder, shown
 from interreflect.scenes.manifest import Geometry, Manifest, read_manifest
 from interreflect.scenes.mesh import IDENTITY
 from interreflect.scenes.scene import Scene
+from interreflect.scenes.scene_cache import cached, keep
 
 
 def load_scene(path: str | os.PathLike[str]) -> Scene:
@@ -25,7 +26,12 @@ def load_scene(path: str | os.PathLike[str]) -> Scene:
     extension = os.path.splitext(found)[1].lower()
     if extension != ".toml" and extension not in EXTENSIONS:
         raise SceneError(f"{shown(found)}: must be one of .toml, {', '.join(EXTENSIONS)}, got {extension!r}")
-    return read_scene(found)
+    scene = cached(found)
+    if scene is None:
+        folder = Folder.of(found)
+        scene = read_scene(found, folder)
+        keep(found, scene, folder)
+    return scene
 
 
 def read_scene(path: str, folder: Folder | None = None) -> Scene:

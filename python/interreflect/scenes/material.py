@@ -30,7 +30,7 @@ class Material:
     Raises ValueError that names the argument, its bound and its value.
     """
 
-    albedo: Vector | None = None
+    albedo: Vector = None  # type: ignore[assignment]  # depends on the map: given below
     albedo_map: Texture | None = None
     specular: Vector = (0.0, 0.0, 0.0)
     roughness: float | None = None
