@@ -35,4 +35,5 @@ PYBIND11_MODULE(_core, m) {
     bind_visibility(m);
     bind_reference(m);
     bind_scene(m);
+    bind_voxels(m);
 }

@@ -23,5 +23,6 @@ void bind_data(py::module_& m);
 void bind_scene(py::module_& m);
 void bind_visibility(py::module_& m);
 void bind_reference(py::module_& m);
+void bind_voxels(py::module_& m);
 
 }  // namespace interreflect::bindings

@@ -43,27 +43,27 @@ struct VoxelPoint {
 /// The voxels that the surface passes through, in ascending order of their cell, in parallel arrays.
 struct VoxelGrid {
     Domain domain;
-    std::vector<std::uint32_t> cell;  // x + cells.x (y + cells.y z)
-    std::vector<vec3> albedo;         // mean diffuse reflectance of the solid samples
-    std::vector<vec3> normal;         // mean of the front sides' normals: unit, or (0, 0, 0) where they cancel
-    std::vector<vec3> emission;       // mean radiance leaving the front side; apart from `albedo` and never marched by default
-    std::vector<vec3> position;       // mean of the solid samples, world space
-    std::vector<float> opacity;       // share of samples that are solid: 1 but for masks
-    std::vector<VoxelPoint> points;   // where voxel i is lit: points[i]
+    Buffer<std::uint32_t> cell;  // x + cells.x (y + cells.y z)
+    Buffer<vec3> albedo;         // mean diffuse reflectance of the solid samples
+    Buffer<vec3> normal;         // mean of the front sides' normals: unit, or (0, 0, 0) where they cancel
+    Buffer<vec3> emission;       // mean radiance leaving the front side; apart from `albedo` and never marched by default
+    Buffer<vec3> position;       // mean of the solid samples, world space
+    Buffer<float> opacity;       // share of samples that are solid: 1 but for masks
+    Buffer<VoxelPoint> points;   // where voxel i is lit: points[i]
     Counts counts;
 
     std::size_t size() const { return cell.size(); }
     std::size_t bytes() const { return size() * (sizeof(std::uint32_t) + 4 * sizeof(vec3) + sizeof(float) + sizeof(VoxelPoint)); }
 };
 
-/// Reflected radiance (direct light only, emission apart) of each voxel, leaving its front and its back side.
+/// Reflected radiance (of direct light only, emission apart) of each voxel's surface, W/(m^2 sr).
 struct LitVoxels {
     std::shared_ptr<const VoxelGrid> grid;
-    std::vector<vec3> radiance;  // front: the side that the averaged normal points to
-    std::vector<vec3> back;      // the other side
+    Buffer<vec3> radiance;  // leaving the front
+    Buffer<vec3> back;      // leaving the back; empty where it was not lit apart: it then passes for as bright as the front
     Counts counts;
 
-    std::size_t bytes() const { return (radiance.size() + back.size()) * sizeof(vec3); }
+    std::size_t bytes() const { return radiance.bytes() + back.bytes(); }
 };
 
 /// Radiance and opacity, halved in size from level to level down to one texel.

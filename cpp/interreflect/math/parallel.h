@@ -20,10 +20,10 @@ struct Cancelled : std::exception {
 /// Calls body(piece) for every piece in [0, pieces), in any order, on all threads of the current arena.
 template <class Body>
 void parallel_pieces(std::size_t pieces, const Body& body) {
-    using Range = oneapi::tbb::blocked_range<std::size_t>;
+    using Blocks = oneapi::tbb::blocked_range<std::size_t>;
     oneapi::tbb::parallel_for(
-        Range(0, pieces, 1),
-        [&](const Range& range) {
+        Blocks(0, pieces, 1),
+        [&](const Blocks& range) {
             for (std::size_t piece = range.begin(); piece != range.end(); ++piece) body(piece);
         },
         oneapi::tbb::simple_partitioner());

@@ -1,0 +1,79 @@
+#include "voxels/voxelize/surface_sampling.h"
+
+#include <algorithm>
+
+#include "voxels/voxelize/contributions.h"
+
+namespace interreflect {
+namespace {
+
+/// What a triangle looks like at samples that stand for `area` each.
+struct Appearance {
+    const VoxelTriangle& triangle;
+    int albedo_level = 0, emission_level = 0;
+
+    Appearance(const VoxelTriangle& t, float area) : triangle(t) {
+        if (t.albedo_map != nullptr) albedo_level = t.level(*t.albedo_map, area);
+        if (t.emission_map != nullptr) emission_level = t.level(*t.emission_map, area);
+    }
+    bool uniform() const {
+        return triangle.albedo_map == nullptr && triangle.emission_map == nullptr && triangle.mask == nullptr;
+    }
+    vec3 albedo(const vec2& uv) const {
+        return triangle.albedo_map == nullptr ? triangle.material->albedo
+                                              : triangle.material->albedo * triangle.albedo_map->bilinear(uv, albedo_level);
+    }
+    vec3 emission(const vec2& uv) const {
+        return triangle.emission_map == nullptr
+                   ? triangle.material->emission
+                   : triangle.material->emission * triangle.emission_map->bilinear(uv, emission_level);
+    }
+};
+
+/// Rows along the longest edge, each cut into equal pieces with a sample in their middle: every sample's area is known exactly,
+/// and a sliver takes no more samples than its length asks for.
+void sample_triangle(const VoxelTriangle& t, float spacing, ContributionSink& sink) {
+    int base = 0;
+    float longest = -1.0f;
+    for (int i = 0; i < 3; ++i) {
+        const vec3 edge = t.corner[(i + 1) % 3] - t.corner[i];
+        const float length = glm::dot(edge, edge);
+        if (length > longest) longest = length, base = i;
+    }
+    longest = std::sqrt(longest);
+    const vec3 p0 = t.corner[base], p1 = t.corner[(base + 1) % 3], p2 = t.corner[(base + 2) % 3];
+    const vec2 t0 = t.texcoord[base], t1 = t.texcoord[(base + 1) % 3], t2 = t.texcoord[(base + 2) % 3];
+    const float height = 2.0f * t.area / longest;
+    const int rows = std::max(1, static_cast<int>(std::ceil(height / spacing)));
+    const Appearance look(t, std::min(t.area, spacing * spacing));
+    const bool uniform = look.uniform();
+    for (int row = 0; row < rows; ++row) {
+        const float v = (static_cast<float>(row) + 0.5f) / static_cast<float>(rows), rest = 1.0f - v;
+        const int count = std::max(1, static_cast<int>(std::ceil(longest * rest / spacing)));
+        const float area = 2.0f * t.area * rest / (static_cast<float>(rows) * static_cast<float>(count));
+        const vec3 start = p0 * rest + p2 * v, along = (p1 - p0) * rest;
+        const vec2 uv_start = t0 * rest + t2 * v, uv_along = (t1 - t0) * rest;
+        for (int i = 0; i < count; ++i) {
+            const float u = (static_cast<float>(i) + 0.5f) / static_cast<float>(count);
+            const vec3 position = start + along * u;
+            if (uniform) {
+                sink.add(position, area, true, t.material->albedo, t.material->emission);
+                continue;
+            }
+            const vec2 uv = uv_start + uv_along * u;
+            const bool solid = t.mask == nullptr || t.mask->solid(uv);
+            sink.add(position, area, solid, look.albedo(uv), look.emission(uv));
+        }
+    }
+}
+
+}  // namespace
+
+VoxelGrid voxelize(const SurfaceSampling& technique, const Scene& scene, const Domain& domain) {
+    const auto spacing = static_cast<float>(technique.spacing);
+    return voxelize_triangles(scene, domain, [spacing](const VoxelTriangle& triangle, ContributionSink& sink) {
+        sample_triangle(triangle, spacing, sink);
+    });
+}
+
+}  // namespace interreflect
