@@ -88,6 +88,7 @@ def study(
 ) -> None:
     """Measure a study: every cell that its folder does not hold yet."""
     from interreflect.catalogue import load_study
+    from interreflect.charts import label
     from interreflect.study.pareto import pareto
     from interreflect.study.records import OK
     from interreflect.study.run import run
@@ -95,8 +96,9 @@ def study(
     records = run(load_study(file), out)
     failed = [record for record in records if record.status != OK]
     front = pareto(records)
-    columns = ["scene", "camera", "bounces", "configuration", "milliseconds", "relmse", "note"]
-    _print_rows("on the front", columns, [[_text(row[name]) for name in columns] for _, row in front.iterrows()])
+    columns = ["scene", "camera", "bounces", "milliseconds", "relmse", "note"]
+    rows = [[label(records, row), *(_text(row[name]) for name in columns)] for _, row in front.iterrows()]
+    _print_rows("on the front", ["configuration", *columns], rows)
     for record in failed:
         print(f"{record.status}: {record.scene}, {record.configuration}, seed {record.seed}: {record.failure}", file=sys.stderr)
     print(f"{len(records)} cells in {out}, {len(failed)} failed")
