@@ -141,7 +141,7 @@ def pictured(records: Records, limit: int) -> list[tuple[tuple[Any, ...], list[R
     """Per view, the records whose pictures are worth showing, fast to slow: every method's most accurate, then those on the front."""
     first: dict[tuple[Any, ...], Record] = {}
     for record in records:
-        if record.images and record.status == OK:
+        if record.status == OK and records.has_images(record):
             first.setdefault((record.scene, record.camera, record.row()["bounces"], record.configuration), record)
     table, front, result = configurations(records), pareto(records), []
     for view, rows in table.groupby(VIEW, sort=False):

@@ -121,13 +121,20 @@ class Records(Sequence[Record]):
         """The table's columns that are knobs."""
         return list(dict.fromkeys(knob_column(name) for record in self.records for name in record.knobs))
 
+    def has_images(self, record: Record) -> bool:
+        """Are the pictures of this record and of its truth there?"""
+        return record.images and all(path.exists() for path in self._pictures(record))
+
     def images(self, record: Record) -> tuple[Image, Image]:
         """The image and the indirect light of a record. FileNotFoundError where the study kept none."""
-        return _load_pair(self.folder / "images" / f"{record.key}.npz")
+        return _load_pair(self._pictures(record)[0])
 
     def truth(self, record: Record) -> tuple[Image, Image]:
         """The image and the indirect light of the truth that a record was compared with."""
-        return _load_pair(self.folder / "truths" / f"{record.truth}.npz")
+        return _load_pair(self._pictures(record)[1])
+
+    def _pictures(self, record: Record) -> tuple[Path, Path]:
+        return self.folder / "images" / f"{record.key}.npz", self.folder / "truths" / f"{record.truth}.npz"
 
     def __getitem__(self, index: Any) -> Any:
         return self.records[index]
