@@ -27,6 +27,12 @@ struct Placement {
     std::uint32_t body = 0;  // 0 is "world", which does not move
 };
 
+/// Everything that is interpolated over a triangle, in half a cache line.
+struct alignas(32) Vertex {
+    vec3 position, normal;
+    vec2 texcoord;
+};
+
 /// The arrays of all groups; shared by geometries that differ only in where their instances stand.
 struct GeometryArrays {
     std::vector<vec3> positions;
@@ -34,6 +40,7 @@ struct GeometryArrays {
     std::vector<vec2> texcoords;  // (0, 0) without texture coordinates
     std::vector<uvec3> triangles;
     std::vector<std::uint32_t> materials;  // one a triangle
+    std::vector<Vertex> vertices;          // positions, normals and texcoords side by side, for those who interpolate them
 };
 struct Group {
     std::uint32_t first_triangle = 0, triangle_count = 0;

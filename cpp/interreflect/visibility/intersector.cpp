@@ -2,6 +2,11 @@
 
 #include <embree3/rtcore.h>
 
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <cstring>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -10,11 +15,22 @@
 namespace interreflect {
 namespace {
 
+/// Bytes that the ray library holds for all scenes.
+std::atomic<std::ptrdiff_t>& held_bytes() {
+    static std::atomic<std::ptrdiff_t> bytes{0};
+    return bytes;
+}
+
 /// One device for the process: it holds threads and settings, no scene.
 RTCDevice device() {
     static const RTCDevice shared = [] {
         const RTCDevice made = rtcNewDevice(nullptr);
         if (made == nullptr) throw std::runtime_error("the ray library has no device on this machine");
+        const auto count = [](void*, ssize_t bytes, bool) {
+            held_bytes() += bytes;
+            return true;
+        };
+        rtcSetDeviceMemoryMonitorFunction(made, count, nullptr);
         return made;
     }();
     return shared;
@@ -25,14 +41,21 @@ void check_device() {
     if (error != RTC_ERROR_NONE) throw std::runtime_error("the ray library failed with error " + std::to_string(error));
 }
 
-/// One hierarchy: a group's solid triangles and, apart, those with a mask.
+/// Consecutive triangles with one mask or none: one geometry of the ray library, which reads our arrays in place.
+struct Run {
+    std::uint32_t first = 0, count = 0;  // global triangle numbers
+    int mask = -1;
+    const GeometryArrays* arrays = nullptr;
+    const Mask* holes = nullptr;
+};
+
+/// One hierarchy: a group's triangles.
 struct Hierarchy {
     RTCScene scene = nullptr;
     std::shared_ptr<const GeometryArrays> arrays;  // Embree reads the shared buffers for as long as it lives
     std::vector<std::shared_ptr<const Mask>> masks;
-    std::vector<int> mask_of_material;
-    std::vector<std::uint32_t> triangle_of_primitive[2];  // global triangle numbers, solid and masked
-    std::vector<uvec3> indices[2];
+    std::vector<Run> runs;  // by geomID
+    std::size_t bytes = 0;
 
     Hierarchy() = default;
     ~Hierarchy() {
@@ -44,56 +67,127 @@ struct Hierarchy {
 
 /// Drops hits on the holes of a mask, for packets of any width.
 void mask_filter(const RTCFilterFunctionNArguments* args) {
-    const auto& hierarchy = *static_cast<const Hierarchy*>(args->geometryUserPtr);
+    const auto& run = *static_cast<const Run*>(args->geometryUserPtr);
+    const auto& vertices = run.arrays->vertices;
     for (unsigned i = 0; i < args->N; ++i) {
         if (args->valid[i] != -1) continue;
         const float u = RTCHitN_u(args->hit, args->N, i), v = RTCHitN_v(args->hit, args->N, i);
-        const std::uint32_t triangle = hierarchy.triangle_of_primitive[1][RTCHitN_primID(args->hit, args->N, i)];
-        const uvec3 t = hierarchy.arrays->triangles[triangle];
-        const auto& uv = hierarchy.arrays->texcoords;
-        const Mask& mask = *hierarchy.masks[hierarchy.mask_of_material[hierarchy.arrays->materials[triangle]]];
-        if (!mask.solid(uv[t.x] * (1.0f - u - v) + uv[t.y] * u + uv[t.z] * v)) args->valid[i] = 0;
+        const uvec3 t = run.arrays->triangles[run.first + RTCHitN_primID(args->hit, args->N, i)];
+        const vec2 uv = vertices[t.x].texcoord * (1.0f - u - v) + vertices[t.y].texcoord * u + vertices[t.z].texcoord * v;
+        if (!run.holes->solid(uv)) args->valid[i] = 0;
     }
 }
 
-void attach_triangles(Hierarchy& hierarchy, int masked, RTCBuildQuality quality) {
-    const auto& indices = hierarchy.indices[masked];
+void attach_run(const Hierarchy& hierarchy, const Group& group, std::size_t number, RTCBuildQuality quality) {
+    const Run& run = hierarchy.runs[number];
     const RTCGeometry geometry = rtcNewGeometry(device(), RTC_GEOMETRY_TYPE_TRIANGLE);
     rtcSetGeometryBuildQuality(geometry, quality);
     rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, hierarchy.arrays->positions.data(), 0,
-                               sizeof(vec3), hierarchy.arrays->positions.size());
-    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, indices.data(), 0, sizeof(uvec3),
-                               indices.size());
-    rtcSetGeometryUserData(geometry, &hierarchy);
-    if (masked != 0) {
+                               sizeof(vec3), group.first_vertex + group.vertex_count);
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, hierarchy.arrays->triangles.data(),
+                               run.first * sizeof(uvec3), sizeof(uvec3), run.count);
+    if (run.mask >= 0) {
+        rtcSetGeometryUserData(geometry, const_cast<Run*>(&run));
         rtcSetGeometryIntersectFilterFunction(geometry, mask_filter);
         rtcSetGeometryOccludedFilterFunction(geometry, mask_filter);
     }
     rtcCommitGeometry(geometry);
-    rtcAttachGeometryByID(hierarchy.scene, geometry, masked);
+    rtcAttachGeometryByID(hierarchy.scene, geometry, static_cast<unsigned>(number));
     rtcReleaseGeometry(geometry);
+}
+
+/// Cuts a group into runs; meshes have one material each, so there are never more runs than meshes.
+std::vector<Run> cut_runs(const GeometryArrays& arrays, const Group& group, const std::vector<int>& mask_of_material,
+                          std::span<const std::shared_ptr<const Mask>> masks) {
+    std::vector<Run> runs;
+    for (std::uint32_t i = group.first_triangle; i < group.first_triangle + group.triangle_count; ++i) {
+        const int mask = mask_of_material[arrays.materials[i]];
+        if (runs.empty() || runs.back().mask != mask)
+            runs.push_back({i, 0, mask, &arrays, mask >= 0 ? masks[mask].get() : nullptr});
+        ++runs.back().count;
+    }
+    return runs;
 }
 
 std::shared_ptr<const Hierarchy> build_group(const Geometry& geometry, const Group& group,
                                              const std::vector<int>& mask_of_material,
                                              std::span<const std::shared_ptr<const Mask>> masks, RTCBuildQuality quality) {
     auto hierarchy = std::make_shared<Hierarchy>();
+    const std::ptrdiff_t before = held_bytes();
     hierarchy->arrays = geometry.arrays;
     hierarchy->masks.assign(masks.begin(), masks.end());
-    hierarchy->mask_of_material = mask_of_material;
-    for (std::uint32_t i = 0; i < group.triangle_count; ++i) {
-        const std::uint32_t triangle = group.first_triangle + i;
-        const int kind = mask_of_material[geometry.arrays->materials[triangle]] >= 0 ? 1 : 0;
-        hierarchy->triangle_of_primitive[kind].push_back(triangle);
-        hierarchy->indices[kind].push_back(geometry.arrays->triangles[triangle]);
-    }
+    hierarchy->runs = cut_runs(*geometry.arrays, group, mask_of_material, masks);
     hierarchy->scene = rtcNewScene(device());
     rtcSetSceneBuildQuality(hierarchy->scene, quality);
-    for (const int kind : {0, 1})
-        if (!hierarchy->indices[kind].empty()) attach_triangles(*hierarchy, kind, quality);
+    for (std::size_t i = 0; i < hierarchy->runs.size(); ++i) attach_run(*hierarchy, group, i, quality);
     rtcCommitScene(hierarchy->scene);
     check_device();
+    hierarchy->bytes = static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, held_bytes() - before));
     return hierarchy;
+}
+
+static_assert(sizeof(RTCRayHit16) == sizeof(RayPacket) && offsetof(RTCRayHit16, ray.tfar) == offsetof(RayPacket, far) &&
+              offsetof(RTCRayHit16, hit.primID) == offsetof(RayPacket, triangle) &&
+              offsetof(RTCRayHit16, hit.instID) == offsetof(RayPacket, instance));
+
+/// Whether packets of 16 run as such; elsewhere they run as two of 8.
+bool native_16() {
+    static const bool native = rtcGetDeviceProperty(device(), RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED) != 0;
+    return native;
+}
+
+struct alignas(64) ValidLanes {
+    int lane[RayPacket::width];
+    explicit ValidLanes(std::uint32_t active) {
+        for (int i = 0; i < RayPacket::width; ++i) lane[i] = -static_cast<int>((active >> i) & 1U);
+    }
+};
+
+/// Lanes [8 half, 8 half + 8) of `wide` arrays of 16 as arrays of 8, and back: a packet is rows of lanes, 4 bytes each.
+template <std::size_t rows>
+void split_rows(const void* wide, void* narrow, int half) {
+    for (std::size_t row = 0; row < rows; ++row)
+        std::memcpy(static_cast<char*>(narrow) + row * 32, static_cast<const char*>(wide) + row * 64 + half * 32, 32);
+}
+template <std::size_t rows>
+void join_rows(const void* narrow, void* wide, int half) {
+    for (std::size_t row = 0; row < rows; ++row)
+        std::memcpy(static_cast<char*>(wide) + row * 64 + half * 32, static_cast<const char*>(narrow) + row * 32, 32);
+}
+
+void intersect_packet(RTCScene scene, RTCIntersectContext& context, const ValidLanes& valid, RayPacket& packet) {
+    if (native_16()) {
+        rtcIntersect16(valid.lane, scene, &context, reinterpret_cast<RTCRayHit16*>(&packet));
+        return;
+    }
+    for (const int half : {0, 1}) {
+        RTCRayHit8 narrow;
+        split_rows<sizeof(narrow) / 32>(&packet, &narrow, half);
+        alignas(32) int lanes[8];
+        std::memcpy(lanes, valid.lane + 8 * half, sizeof(lanes));
+        rtcIntersect8(lanes, scene, &context, &narrow);
+        join_rows<sizeof(narrow) / 32>(&narrow, &packet, half);
+    }
+}
+
+void occlude_packet(RTCScene scene, RTCIntersectContext& context, const ValidLanes& valid, RayPacket& packet) {
+    if (native_16()) {
+        rtcOccluded16(valid.lane, scene, &context, reinterpret_cast<RTCRay16*>(&packet));
+        return;
+    }
+    for (const int half : {0, 1}) {
+        RTCRay8 narrow;
+        split_rows<sizeof(narrow) / 32>(&packet, &narrow, half);
+        alignas(32) int lanes[8];
+        std::memcpy(lanes, valid.lane + 8 * half, sizeof(lanes));
+        rtcOccluded8(lanes, scene, &context, &narrow);
+        join_rows<sizeof(narrow) / 32>(&narrow, &packet, half);
+    }
+}
+
+RTCRay library_ray(const Ray& ray) {
+    const vec3 &o = ray.origin, &d = ray.direction;
+    return {o.x, o.y, o.z, ray.near, d.x, d.y, d.z, 0, ray.far, ~0U, 0, 0};
 }
 
 }  // namespace
@@ -104,6 +198,7 @@ struct Intersector::Implementation {
     RTCScene root = nullptr;                    // groups[0]'s scene where nothing else is placed
     std::vector<std::uint32_t> instance_of_id;  // by instID of the root; empty where the root is groups[0]'s
     bool owns_root = false;
+    std::size_t root_bytes = 0;
 
     ~Implementation() {
         if (owns_root) rtcReleaseScene(root);
@@ -111,6 +206,7 @@ struct Intersector::Implementation {
     void build_root();
     Hit make_hit(std::uint32_t instance_id, std::uint32_t geometry_id, std::uint32_t primitive, float distance, float u,
                  float v) const;
+    void number_hits(RayPacket& packet, std::uint32_t active) const;
 };
 
 void Intersector::Implementation::build_root() {
@@ -118,6 +214,7 @@ void Intersector::Implementation::build_root() {
         root = groups[0]->scene;
         return;
     }
+    const std::ptrdiff_t before = held_bytes();
     root = rtcNewScene(device());
     owns_root = true;
     for (std::uint32_t i = 0; i < geometry->instances.size(); ++i) {
@@ -133,6 +230,7 @@ void Intersector::Implementation::build_root() {
     }
     rtcCommitScene(root);
     check_device();
+    root_bytes = static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, held_bytes() - before));
 }
 
 Hit Intersector::Implementation::make_hit(std::uint32_t instance_id, std::uint32_t geometry_id, std::uint32_t primitive,
@@ -140,11 +238,22 @@ Hit Intersector::Implementation::make_hit(std::uint32_t instance_id, std::uint32
     Hit hit;
     if (geometry_id == RTC_INVALID_GEOMETRY_ID) return hit;
     hit.instance = owns_root ? instance_of_id[instance_id] : 0;
-    hit.triangle = groups[geometry->instances[hit.instance].group]->triangle_of_primitive[geometry_id][primitive];
+    hit.triangle = groups[geometry->instances[hit.instance].group]->runs[geometry_id].first + primitive;
     hit.distance = distance;
     hit.u = u;
     hit.v = v;
     return hit;
+}
+
+/// Replaces the ray library's numbers by ours.
+void Intersector::Implementation::number_hits(RayPacket& packet, std::uint32_t active) const {
+    for (int i = 0; i < RayPacket::width; ++i) {
+        const Hit hit = ((active >> i) & 1U) == 0 ? Hit{}
+                                                  : make_hit(packet.instance[i], packet.geometry[i], packet.triangle[i],
+                                                             packet.far[i], packet.u[i], packet.v[i]);
+        packet.triangle[i] = hit.triangle;
+        packet.instance[i] = hit.instance;
+    }
 }
 
 Intersector::Intersector(std::shared_ptr<const Geometry> geometry, std::span<const Material> materials,
@@ -177,26 +286,18 @@ Intersector::~Intersector() = default;
 
 const std::shared_ptr<const Geometry>& Intersector::geometry() const { return implementation_->geometry; }
 
-std::size_t Intersector::bytes() const { return 0; }
+std::size_t Intersector::bytes() const {
+    std::size_t sum = implementation_->root_bytes;
+    for (const auto& group : implementation_->groups) sum += group->bytes;
+    return sum;
+}
 
 Hit Intersector::nearest(const Ray& ray) const {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
-    RTCRayHit query{};
-    query.ray = {ray.origin.x,
-                 ray.origin.y,
-                 ray.origin.z,
-                 ray.near,
-                 ray.direction.x,
-                 ray.direction.y,
-                 ray.direction.z,
-                 0,
-                 ray.far,
-                 ~0U,
-                 0,
-                 0};
-    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    RTCRayHit query;
+    query.ray = library_ray(ray);
+    query.hit.geomID = query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     rtcIntersect1(implementation_->root, &context, &query);
     return implementation_->make_hit(query.hit.instID[0], query.hit.geomID, query.hit.primID, query.ray.tfar, query.hit.u,
                                      query.hit.v);
@@ -205,33 +306,71 @@ Hit Intersector::nearest(const Ray& ray) const {
 bool Intersector::occluded(const Ray& ray) const {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
-    RTCRay query{ray.origin.x,
-                 ray.origin.y,
-                 ray.origin.z,
-                 ray.near,
-                 ray.direction.x,
-                 ray.direction.y,
-                 ray.direction.z,
-                 0,
-                 ray.far,
-                 ~0U,
-                 0,
-                 0};
+    RTCRay query = library_ray(ray);
     rtcOccluded1(implementation_->root, &context, &query);
     return query.tfar < 0.0f;
 }
 
+void Intersector::nearest(RayPacket& packet, std::uint32_t active) const {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    std::fill_n(packet.time, RayPacket::width, 0.0f);
+    std::fill_n(packet.reserved[0], RayPacket::width, ~0U);  // the ray mask
+    std::fill_n(packet.geometry, RayPacket::width, RTC_INVALID_GEOMETRY_ID);
+    std::fill_n(packet.instance, RayPacket::width, RTC_INVALID_GEOMETRY_ID);
+    intersect_packet(implementation_->root, context, ValidLanes(active), packet);
+    implementation_->number_hits(packet, active);
+}
+
+std::uint32_t Intersector::occluded(RayPacket& packet, std::uint32_t active) const {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    std::fill_n(packet.time, RayPacket::width, 0.0f);
+    std::fill_n(packet.reserved[0], RayPacket::width, ~0U);
+    occlude_packet(implementation_->root, context, ValidLanes(active), packet);
+    std::uint32_t blocked = 0;
+    for (int i = 0; i < RayPacket::width; ++i) blocked |= static_cast<std::uint32_t>(packet.far[i] < 0.0f) << i;
+    return blocked & active;
+}
+
 void Intersector::nearest_coherent(std::span<const Ray> rays, std::span<Hit> hits) const {
-    for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = nearest(rays[i]);
+    RayPacket packet;
+    for (std::size_t begin = 0; begin < rays.size(); begin += RayPacket::width) {
+        const int count = static_cast<int>(std::min<std::size_t>(RayPacket::width, rays.size() - begin));
+        for (int i = 0; i < count; ++i) packet.set(i, rays[begin + i]);
+        nearest(packet, (1U << count) - 1U);
+        for (int i = 0; i < count; ++i) hits[begin + i] = packet.hit(i);
+    }
 }
+
 void Intersector::occluded_coherent(std::span<const Ray> rays, std::span<std::uint8_t> blocked) const {
-    for (std::size_t i = 0; i < rays.size(); ++i) blocked[i] = occluded(rays[i]);
+    RayPacket packet;
+    for (std::size_t begin = 0; begin < rays.size(); begin += RayPacket::width) {
+        const int count = static_cast<int>(std::min<std::size_t>(RayPacket::width, rays.size() - begin));
+        for (int i = 0; i < count; ++i) packet.set(i, rays[begin + i]);
+        const std::uint32_t lanes = occluded(packet, (1U << count) - 1U);
+        for (int i = 0; i < count; ++i) blocked[begin + i] = static_cast<std::uint8_t>((lanes >> i) & 1U);
+    }
 }
+
+// Incoherent nearest hits cost the same ray by ray, in packets and in streams (PEERS.md); any-hit gains from streams of 256.
 void Intersector::nearest_incoherent(std::span<const Ray> rays, std::span<Hit> hits) const {
     for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = nearest(rays[i]);
 }
+
 void Intersector::occluded_incoherent(std::span<const Ray> rays, std::span<std::uint8_t> blocked) const {
-    for (std::size_t i = 0; i < rays.size(); ++i) blocked[i] = occluded(rays[i]);
+    constexpr std::size_t stream = 256;
+    std::array<RTCRay, stream> queries;
+    for (std::size_t begin = 0; begin < rays.size(); begin += stream) {
+        const std::size_t count = std::min(stream, rays.size() - begin);
+        for (std::size_t i = 0; i < count; ++i) queries[i] = library_ray(rays[begin + i]);
+        RTCIntersectContext context;
+        rtcInitIntersectContext(&context);
+        rtcOccluded1M(implementation_->root, &context, queries.data(), static_cast<unsigned>(count), sizeof(RTCRay));
+        for (std::size_t i = 0; i < count; ++i) blocked[begin + i] = queries[i].tfar < 0.0f;
+    }
 }
 
 }  // namespace interreflect

@@ -7,11 +7,12 @@ HitGeometry hit_geometry(const Geometry& geometry, std::uint32_t instance, std::
     const uvec3 t = arrays.triangles[triangle];
     const float w = 1.0f - u - v;
     HitGeometry at;
-    const vec3 a = arrays.positions[t.x], b = arrays.positions[t.y], c = arrays.positions[t.z];
+    const Vertex &va = arrays.vertices[t.x], &vb = arrays.vertices[t.y], &vc = arrays.vertices[t.z];
+    const vec3 a = va.position, b = vb.position, c = vc.position;
     at.position = a * w + b * u + c * v;
     vec3 geometric = glm::cross(b - a, c - a);
-    vec3 shading = arrays.normals[t.x] * w + arrays.normals[t.y] * u + arrays.normals[t.z] * v;
-    at.texcoord = arrays.texcoords[t.x] * w + arrays.texcoords[t.y] * u + arrays.texcoords[t.z] * v;
+    vec3 shading = va.normal * w + vb.normal * u + vc.normal * v;
+    at.texcoord = va.texcoord * w + vb.texcoord * u + vc.texcoord * v;
     const Instance& placed = geometry.instances[instance];
     at.offset = placed.identity ? self_hit_offset(a, b, c) : self_hit_offset(geometry, instance, triangle);
     if (!placed.identity) {
