@@ -33,6 +33,7 @@ PYBIND11_MODULE(_core, m) {
              [](Threads& self, const py::object&, const py::object&, const py::object&) { thread_limit() = self.before; });
     bind_data(m);
     bind_visibility(m);
+    bind_direct(m);
     bind_reference(m);
     bind_scene(m);
     bind_voxels(m);

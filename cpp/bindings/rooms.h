@@ -22,6 +22,7 @@ void bind_data(py::module_& m);
 /// Scenes are bound after the ray hierarchy that they hold.
 void bind_scene(py::module_& m);
 void bind_visibility(py::module_& m);
+void bind_direct(py::module_& m);
 void bind_reference(py::module_& m);
 void bind_voxels(py::module_& m);
 

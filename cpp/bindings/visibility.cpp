@@ -28,7 +28,8 @@ void image_property(py::class_<GBuffer, std::shared_ptr<GBuffer>>& cls, const ch
 
 std::size_t gbuffer_bytes(const GBuffer& g) {
     return g.position.bytes() + g.geometric_normal.bytes() + g.normal.bytes() + g.albedo.bytes() + g.specular.bytes() +
-           g.emission.bytes() + g.alpha.bytes() + g.depth.bytes() + g.triangle.bytes() + g.instance.bytes() + g.body.bytes();
+           g.emission.bytes() + g.alpha.bytes() + g.depth.bytes() + g.offset.bytes() + g.triangle.bytes() + g.instance.bytes() +
+           g.body.bytes();
 }
 
 void bind_gbuffer(py::module_& m) {
@@ -45,6 +46,7 @@ void bind_gbuffer(py::module_& m) {
                    "Radiance towards the camera, W/(m^2 sr); the environment's where nothing was hit.");
     image_property(cls, "alpha", &GBuffer::alpha, "GGX width: roughness squared, or sqrt(2 / (exponent + 2)).");
     image_property(cls, "depth", &GBuffer::depth, "Distance along the ray, scene units; infinite where nothing was hit.");
+    image_property(cls, "offset", &GBuffer::offset, "How far off the surface rays start, scene units.");
     image_property(cls, "triangle", &GBuffer::triangle, "Global number of the triangle; 2^32 - 1 where nothing was hit.");
     image_property(cls, "instance", &GBuffer::instance, "Number of the instance; 2^32 - 1 where nothing was hit.");
     image_property(cls, "body", &GBuffer::body, "Number of the body; 0 is \"world\".");

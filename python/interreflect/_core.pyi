@@ -178,6 +178,12 @@ class GBuffer:
         """
 
     @property
+    def offset(self) -> numpy.typing.NDArray[numpy.float32]:
+        """
+        How far off the surface rays start, scene units.
+        """
+
+    @property
     def position(self) -> numpy.typing.NDArray[numpy.float32]:
         """
         World space; (0, 0, 0) where nothing was hit.
@@ -197,6 +203,124 @@ class GBuffer:
 
     @property
     def width(self) -> int:
+        ...
+class DirectLight:
+    """
+    Light that the pixels of a G-buffer reflect once, towards the camera.
+    """
+
+    @property
+    def bytes(self) -> int:
+        ...
+
+    @property
+    def counts(self) -> Counts:
+        ...
+
+    @property
+    def radiance(self) -> numpy.typing.NDArray[numpy.float32]:
+        """
+        (height, width, 3) view, W/(m^2 sr).
+        """
+class ShadowMap:
+    """Depth seen from every light, compared 3 x 3; emitters by traced samples."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self, *, size: int=..., bias: float=..., samples: int=...) -> None:
+        ...
+
+    def replace(self, *, size: int=..., bias: float=..., samples: int=...) -> ShadowMap:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+
+    @property
+    def size(self) -> int:
+        ...
+
+    @property
+    def bias(self) -> float:
+        ...
+
+    @property
+    def samples(self) -> int:
+        ...
+class TracedShadows:
+    """A ray to every point, spot and directional light; stratified samples of the emitters."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self, *, samples: int=...) -> None:
+        ...
+
+    def replace(self, *, samples: int=...) -> TracedShadows:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+
+    @property
+    def samples(self) -> int:
+        ...
+class ConeSky:
+    """What the march's cones leave open of the environment."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self) -> None:
+        ...
+
+    def replace(self) -> ConeSky:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+class TracedSky:
+    """Stratified rays to the environment; irradiance filtered along surfaces if so wished."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self, *, samples: int=..., filter_radius: int=...) -> None:
+        ...
+
+    def replace(self, *, samples: int=..., filter_radius: int=...) -> TracedSky:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+
+    @property
+    def samples(self) -> int:
+        ...
+
+    @property
+    def filter_radius(self) -> int:
         ...
 class PathTraced:
     """
@@ -238,10 +362,22 @@ def _rebuild(arg0: typing.Any, arg1: dict[str, typing.Any]) -> typing.Any:
     """
     Makes a technique again from its knobs (pickle).
     """
+def cone_sky(gbuffer: GBuffer, gathered: typing.Any, glossy: typing.Any=None) -> DirectLight:
+    """
+    What the march's cones left open: albedo / pi * gathered.sky + glossy.sky.
+    """
 def path_trace(scene: ..., camera: Camera, width: typing.SupportsInt | typing.SupportsIndex, height: typing.SupportsInt | typing.SupportsIndex, *, samples: typing.SupportsInt | typing.SupportsIndex=1, milliseconds: typing.SupportsFloat | typing.SupportsIndex | None=None, bounces: typing.SupportsInt | typing.SupportsIndex | None=1, pixel: str='centre', pattern: typing.SupportsInt | typing.SupportsIndex=8, seed: typing.SupportsInt | typing.SupportsIndex=0) -> PathTraced:
     """
     Path tracing with exactly `bounces` indirect bounces (None: all); `samples` paths a pixel, fewer where `milliseconds` end sooner.
     """
+@typing.overload
+def shadow(technique: TracedShadows, scene: ..., gbuffer: GBuffer, seed: typing.SupportsInt | typing.SupportsIndex=0) -> DirectLight:
+    ...
+@typing.overload
+def shadow(technique: ShadowMap, scene: ..., gbuffer: GBuffer, seed: typing.SupportsInt | typing.SupportsIndex=0) -> DirectLight:
+    ...
+def sky(technique: TracedSky, scene: ..., gbuffer: GBuffer, seed: typing.SupportsInt | typing.SupportsIndex=0) -> DirectLight:
+    ...
 def trace_gbuffer(scene: ..., camera: Camera, width: typing.SupportsInt | typing.SupportsIndex, height: typing.SupportsInt | typing.SupportsIndex) -> GBuffer:
     """
     The G-buffer by primary rays through pixel centres; textures are filtered by the pixel's footprint.

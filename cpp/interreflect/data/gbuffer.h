@@ -24,6 +24,7 @@ struct GBuffer {
     Buffer<vec3> emission;           // radiance towards the camera; the environment's where nothing was hit
     Buffer<float> alpha;             // GGX width
     Buffer<float> depth;             // distance along the ray; infinite where nothing was hit
+    Buffer<float> offset;            // how far off the surface rays start (surface.h), scene units; 0 where nothing was hit
     Buffer<std::uint32_t> triangle;  // global number; no_hit
     Buffer<std::uint32_t> instance;  // no_hit where nothing was hit
     Buffer<std::uint32_t> body;      // 0 is "world"

@@ -27,6 +27,7 @@ GBuffer allocate(const Camera& camera, int width, int height) {
     g.emission = Buffer<vec3>(n);
     g.alpha = Buffer<float>(n);
     g.depth = Buffer<float>(n);
+    g.offset = Buffer<float>(n);
     g.triangle = Buffer<std::uint32_t>(n);
     g.instance = Buffer<std::uint32_t>(n);
     g.body = Buffer<std::uint32_t>(n);
@@ -38,6 +39,7 @@ void store_miss(GBuffer& g, std::size_t pixel, const vec3& radiance) {
     g.albedo[pixel] = g.specular[pixel] = vec3(0);
     g.emission[pixel] = radiance;
     g.alpha[pixel] = 1.0f;
+    g.offset[pixel] = 0.0f;
     g.depth[pixel] = std::numeric_limits<float>::infinity();
     g.triangle[pixel] = g.instance[pixel] = no_hit;
     g.body[pixel] = 0;
@@ -54,6 +56,7 @@ void store_hit(GBuffer& g, std::size_t pixel, const Scene& scene, const Hit& hit
     g.emission[pixel] = point.emission;
     g.alpha[pixel] = point.alpha;
     g.depth[pixel] = hit.distance;
+    g.offset[pixel] = point.offset;
     g.triangle[pixel] = hit.triangle;
     g.instance[pixel] = hit.instance;
     g.body[pixel] = scene.geometry->instances[hit.instance].body;

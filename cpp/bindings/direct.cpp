@@ -1,0 +1,77 @@
+/// Room direct: light that the pixels reflect once.
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <memory>
+
+#include "bindings/arrays.h"
+#include "bindings/rooms.h"
+#include "bindings/run.h"
+#include "bindings/technique.h"
+#include "direct/shadow.h"
+#include "direct/sky.h"
+
+namespace interreflect::bindings {
+namespace {
+
+using SharedLight = std::shared_ptr<DirectLight>;
+
+template <class Technique>
+void bind_shadow(py::module_& m) {
+    m.def(
+        "shadow",
+        [](const Technique& technique, const BoundScene& s, const GBuffer& g, std::uint32_t seed) -> SharedLight {
+            return run(
+                [&] { return std::make_shared<DirectLight>(shadow(technique, s.scene, *s.intersector, *s.lights, g, seed)); });
+        },
+        py::arg("technique"), py::arg("scene"), py::arg("gbuffer"), py::arg("seed") = 0);
+}
+
+/// The pixels of an (h, w, 3) image, borrowed from numpy; ValueError unless it has the G-buffer's size.
+std::span<const vec3> image_pixels(const py::object& image, const GBuffer& g, const char* name) {
+    const auto array = exact_array<float>(image, name);
+    if (array.ndim() != 3 || array.shape(0) != g.height || array.shape(1) != g.width || array.shape(2) != 3)
+        throw py::value_error(std::string(name) + " must have the G-buffer's shape (" + std::to_string(g.height) + ", " +
+                              std::to_string(g.width) + ", 3)");
+    return {reinterpret_cast<const vec3*>(array.data()), g.pixels()};
+}
+
+SharedLight cone_sky(const GBuffer& g, const py::object& gathered, const py::object& glossy) {
+    const py::object irradiance = gathered.attr("sky");
+    const py::object lobe = glossy.is_none() ? py::object(py::none()) : py::object(glossy.attr("sky"));
+    const auto arrived = image_pixels(irradiance, g, "gathered.sky");
+    const auto reflected = lobe.is_none() ? std::span<const vec3>() : image_pixels(lobe, g, "glossy.sky");
+    return run([&] { return std::make_shared<DirectLight>(sky(ConeSky{}, g, arrived, reflected)); });
+}
+
+}  // namespace
+
+void bind_direct(py::module_& m) {
+    py::class_<DirectLight, SharedLight>(m, "DirectLight",
+                                         "Light that the pixels of a G-buffer reflect once, towards the camera.")
+        .def_property_readonly(
+            "radiance",
+            [](const py::object& self) {
+                const auto& light = self.cast<const DirectLight&>();
+                return image_view(light.radiance, light.width, light.height, self);
+            },
+            "(height, width, 3) view, W/(m^2 sr).")
+        .def_readonly("counts", &DirectLight::counts)
+        .def_property_readonly("bytes", [](const DirectLight& light) { return light.radiance.bytes(); });
+    bind_stage(m, "shadow", "What pixels reflect of point, spot and directional lights and of emitters.", true,
+               static_cast<const Shadow*>(nullptr));
+    bind_stage(m, "sky", "What pixels reflect of the environment.", true, static_cast<const Sky*>(nullptr));
+    bind_shadow<TracedShadows>(m);
+    bind_shadow<ShadowMap>(m);
+    m.def(
+        "sky",
+        [](const TracedSky& technique, const BoundScene& s, const GBuffer& g, std::uint32_t seed) -> SharedLight {
+            return run(
+                [&] { return std::make_shared<DirectLight>(sky(technique, s.scene, *s.intersector, *s.lights, g, seed)); });
+        },
+        py::arg("technique"), py::arg("scene"), py::arg("gbuffer"), py::arg("seed") = 0);
+    m.def("cone_sky", &cone_sky, py::arg("gbuffer"), py::arg("gathered"), py::arg("glossy") = py::none(),
+          "What the march's cones left open: albedo / pi * gathered.sky + glossy.sky.");
+}
+
+}  // namespace interreflect::bindings

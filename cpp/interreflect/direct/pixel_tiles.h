@@ -1,0 +1,46 @@
+/// Walks over a G-buffer tile by tile, in an order in which sixteen consecutive pixels are near each other.
+#pragma once
+#include <array>
+#include <span>
+
+#include "data/gbuffer.h"
+#include "math/parallel.h"
+
+namespace interreflect {
+
+inline constexpr int tile_side = 16, tile_pixels = tile_side * tile_side;
+
+/// The pixels of one tile, 4 x 4 blocks one after the other.
+class TilePixels {
+  public:
+    TilePixels(const GBuffer& g, const Tile& tile) : tile_(tile.index) {
+        for (int block = 0; block < 16; ++block)
+            for (int k = 0; k < 16; ++k) {
+                const int x = tile.x0 + block % 4 * 4 + k % 4, y = tile.y0 + block / 4 * 4 + k / 4;
+                if (x < tile.x1 && y < tile.y1) all_[count_++] = static_cast<std::size_t>(y) * g.width + x;
+            }
+        for (std::size_t i = 0; i < count_; ++i)
+            if (g.hit(all_[i])) hit_[hits_++] = all_[i];
+    }
+    /// Those that hit a surface.
+    const std::size_t* begin() const { return hit_.data(); }
+    const std::size_t* end() const { return hit_.data() + hits_; }
+    std::span<const std::size_t> all() const { return {all_.data(), count_}; }
+    std::size_t tile() const { return tile_; }
+
+  private:
+    std::array<std::size_t, tile_pixels> all_, hit_;
+    std::size_t count_ = 0, hits_ = 0, tile_;
+};
+
+inline std::size_t tile_count(const GBuffer& g) {
+    const auto along = [](int pixels) { return static_cast<std::size_t>((pixels + tile_side - 1) / tile_side); };
+    return along(g.width) * along(g.height);
+}
+
+template <class Body>
+void for_each_tile(const GBuffer& g, const Body& body) {
+    parallel_tiles(g.width, g.height, tile_side, [&](const Tile& tile) { body(TilePixels(g, tile)); });
+}
+
+}  // namespace interreflect

@@ -1,0 +1,81 @@
+#include "visibility/light_view.h"
+
+#include <limits>
+
+namespace interreflect {
+namespace {
+
+LightView perspective_view(const vec3& eye, const vec3& forward, const vec3& right, float half, int size) {
+    LightView view;
+    view.size = size;
+    view.origin = eye;
+    view.forward = forward;
+    view.right = right;
+    view.down = glm::cross(forward, right);
+    view.half_x = view.half_y = half;
+    return view;
+}
+
+std::vector<LightView> cube_views(const vec3& eye, int size) {
+    const float half = 1.0f + 2.0f / static_cast<float>(size);
+    std::vector<LightView> views;
+    for (int axis = 0; axis < 3; ++axis)
+        for (const float sign : {-1.0f, 1.0f}) {
+            vec3 forward(0), right(0);
+            forward[axis] = sign;
+            right[(axis + 1) % 3] = 1.0f;
+            views.push_back(perspective_view(eye, forward, right, half, size));
+        }
+    return views;
+}
+
+}  // namespace
+
+float LightView::texel_measure(float x, float y) const {
+    const float area = 4.0f * half_x * half_y / (static_cast<float>(size) * static_cast<float>(size));
+    if (!perspective) return area;
+    const float sx = half_x * (2.0f * x / static_cast<float>(size) - 1.0f);
+    const float sy = half_y * (2.0f * y / static_cast<float>(size) - 1.0f);
+    const float squared = 1.0f + sx * sx + sy * sy;
+    return area / (squared * std::sqrt(squared));
+}
+
+LightView view_of(const DirectionalLight& light, const Geometry::Bounds& bounds, int size) {
+    LightView view;
+    view.perspective = false;
+    view.size = size;
+    view.forward = glm::normalize(light.direction);
+    const Frame frame(view.forward);
+    view.right = frame.tangent;
+    view.down = frame.bitangent;
+    constexpr float infinity = std::numeric_limits<float>::infinity();
+    vec3 lower(infinity), upper(-infinity);
+    const vec3 centre = 0.5f * (bounds.lower + bounds.upper);
+    for (int corner = 0; corner < 8; ++corner) {
+        const vec3 p{(corner & 1) != 0 ? bounds.upper.x : bounds.lower.x, (corner & 2) != 0 ? bounds.upper.y : bounds.lower.y,
+                     (corner & 4) != 0 ? bounds.upper.z : bounds.lower.z};
+        const vec3 local = frame.to_local(p - centre);
+        lower = glm::min(lower, local);
+        upper = glm::max(upper, local);
+    }
+    // A texel of margin, so that what lies on the border is inside; flat scenes seen edge-on still have some width.
+    const float margin = 1.0f + 2.0f / static_cast<float>(size);
+    const float least = 1e-6f * glm::length(upper - lower);
+    view.half_x = std::fmax(0.5f * (upper.x - lower.x) * margin, least);
+    view.half_y = std::fmax(0.5f * (upper.y - lower.y) * margin, least);
+    view.origin = centre + frame.to_world({0.5f * (lower.x + upper.x), 0.5f * (lower.y + upper.y), lower.z}) -
+                  view.forward * (0.01f * (upper.z - lower.z) + least);
+    return view;
+}
+
+std::vector<LightView> views_of(const SpotLight& light, int size) {
+    constexpr float widest = 75.0f;
+    if (light.outer >= widest) return cube_views(light.position, size);
+    const vec3 forward = glm::normalize(light.direction);
+    const float half = std::fmax(std::tan(light.outer * degrees_to_radians), 1e-4f) * (1.0f + 2.0f / static_cast<float>(size));
+    return {perspective_view(light.position, forward, Frame(forward).tangent, half, size)};
+}
+
+std::vector<LightView> views_of(const PointLight& light, int size) { return cube_views(light.position, size); }
+
+}  // namespace interreflect
