@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+import interreflect.cache as cache
 from interreflect import metrics
 from interreflect.study.files import canonical, replacing, set_aside
 from interreflect.study.interface import Frame, Image, Scene
@@ -72,6 +73,7 @@ def reference(
     path = _folder() / f"{key}.npz"
     found = load_truth(path) if path.exists() else None
     if found is not None:
+        cache.touch(path)
         return found
     method = path_tracer()
 
@@ -81,6 +83,7 @@ def reference(
 
     truth = converge(render, wanted, seed, key)
     save_truth(truth, path)
+    cache.trim(keep=path)
     return truth
 
 
@@ -200,6 +203,4 @@ def load_truth(path: Path) -> Truth | None:
 
 
 def _folder() -> Path:
-    from platformdirs import user_cache_path
-
-    return user_cache_path("interreflect") / "references"
+    return cache.folder("references")
