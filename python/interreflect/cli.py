@@ -119,18 +119,20 @@ def report(
 @cache_app.command("list")
 def cache_list() -> None:
     """List what the cache holds."""
-    from interreflect import cache
+    import interreflect.cache as cache
 
-    rows = [[entry.kind, entry.key, f"{entry.bytes / 2**20:.1f}"] for entry in cache.entries()]
-    _print_rows(f"cache in {cache.folder()}", ["kind", "key", "MiB"], rows)
+    entries = cache.entries()
+    rows = [[entry.kind, entry.path.name, f"{entry.bytes / 2**20:.1f}"] for entry in entries]
+    _print_rows(f"cache in {cache.folder()}", ["kind", "file", "MiB"], rows)
+    print(f"{len(entries)} files, {sum(entry.bytes for entry in entries) / 2**20:.1f} of at most {cache.MAX_BYTES / 2**20:.0f} MiB")
 
 
 @cache_app.command("clear")
 def cache_clear() -> None:
     """Remove everything from the cache."""
-    from interreflect import cache
+    import interreflect.cache as cache
 
-    print(f"removed {cache.clear()} files from {cache.folder()}")
+    print(f"removed {cache.clear() / 2**20:.1f} MiB from {cache.folder()}")
 
 
 def _print_table(what: str, rows: list[tuple[str, ...]]) -> None:

@@ -12,7 +12,7 @@ import interreflect.study.reference as reference_module
 
 @pytest.fixture
 def fake_truth(monkeypatch, tmp_path):
-    """Truths by FakePathTracing, cached in a folder of this test."""
+    """Truths by FakePathTracing, cached in a folder of this test, which is returned."""
     monkeypatch.setattr(reference_module, "path_tracer", lambda: study_fakes.FakePathTracing)
-    monkeypatch.setattr(reference_module, "_folder", lambda: tmp_path / "truths")
-    return tmp_path / "truths"
+    monkeypatch.setenv("INTERREFLECT_CACHE", str(tmp_path / "cache"))
+    return tmp_path / "cache" / "references"

@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import hashlib
 import itertools
+import os
 from types import SimpleNamespace
 
 import numpy as np
@@ -117,6 +118,6 @@ class FakePathTraced:
 
 
 def use_fake_truth(folder):
-    """Let truths come from FakePathTracing and be cached below `folder`."""
+    """Let truths come from FakePathTracing and be cached below `folder`, in a process that does nothing else."""
     reference_module.path_tracer = lambda: FakePathTracing
-    reference_module._folder = lambda: folder
+    os.environ["INTERREFLECT_CACHE"] = str(folder)

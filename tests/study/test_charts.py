@@ -39,7 +39,7 @@ def records(tmp_path_factory):
     folder = tmp_path_factory.mktemp("study")
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(reference_module, "path_tracer", lambda: study_fakes.FakePathTracing)
-        patch.setattr(reference_module, "_folder", lambda: folder / "truths")
+        patch.setenv("INTERREFLECT_CACHE", str(folder / "cache"))
         scenes = [Scene(), Scene("<bright & wide>", 3.0)]
         run(Study(name="a < b?", scenes=scenes, methods=METHODS, size=(24, 16), repeats=1), folder / "r")
     return load_records(folder / "r")

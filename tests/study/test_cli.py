@@ -86,6 +86,17 @@ def test_a_study_file_is_measured_and_reported(tmp_path):
     assert "<title>fakes</title>" in (tmp_path / "page.html").read_text()
 
 
+def test_the_cache_is_listed_and_cleared(tmp_path, monkeypatch):
+    monkeypatch.setenv("INTERREFLECT_CACHE", str(tmp_path))
+    (tmp_path / "references").mkdir()
+    (tmp_path / "references" / "old.npz").write_bytes(bytes(2**20))
+    listed = interreflect("cache", "list")
+    assert "old.npz" in listed.stdout
+    assert "1 files, 1.0 of at most" in listed.stdout
+    assert "removed 1.0 MiB" in interreflect("cache", "clear").stdout
+    assert not list(tmp_path.glob("*/*"))
+
+
 def test_every_built_in_scene_is_listed_with_its_knobs():
     rows = scene_rows()
     assert ("", "light", "str", "", "", "'area'") in [row[:6] for row in rows]

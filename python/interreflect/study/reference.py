@@ -15,7 +15,7 @@ import numpy.typing as npt
 
 import interreflect.cache as cache
 from interreflect import metrics
-from interreflect.study.files import canonical, replacing, set_aside
+from interreflect.study.files import canonical, set_aside
 from interreflect.study.interface import Frame, Image, Scene
 from interreflect.study.sources import source_digest
 
@@ -70,7 +70,7 @@ def reference(
     wanted = Reference(noise, max_spp)
     name = camera_name(scene, camera)
     key = reference_key(scene, name, size, bounces, wanted, seed)
-    path = _folder() / f"{key}.npz"
+    path = cache.folder("references") / f"{key}.npz"
     found = load_truth(path) if path.exists() else None
     if found is not None:
         cache.touch(path)
@@ -83,7 +83,6 @@ def reference(
 
     truth = converge(render, wanted, seed, key)
     save_truth(truth, path)
-    cache.trim(keep=path)
     return truth
 
 
@@ -183,10 +182,10 @@ def _noise(a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]) -> float:
 
 
 def save_truth(truth: Truth, path: Path) -> None:
+    """Keep a truth in the cache; without a cache that can be written it is made anew each time, which a warning says."""
     arrays = {"image": truth.image, "direct": truth.direct, "indirect": truth.indirect, "halves": np.stack(truth.halves)}
     numbers = np.array([truth.noise, truth.indirect_noise, truth.spp])
-    with replacing(path) as file:
-        np.savez(file, allow_pickle=False, **arrays, numbers=numbers)
+    cache.write(path, lambda file: np.savez(file, allow_pickle=False, **arrays, numbers=numbers))
 
 
 def load_truth(path: Path) -> Truth | None:
@@ -200,7 +199,3 @@ def load_truth(path: Path) -> Truth | None:
     noise, indirect_noise, spp = (float(x) for x in a["numbers"])
     halves = a["halves"][0], a["halves"][1]
     return Truth(a["image"], a["direct"], a["indirect"], halves, noise, indirect_noise, int(spp), path.stem)
-
-
-def _folder() -> Path:
-    return cache.folder("references")
