@@ -132,7 +132,7 @@ def cache_clear() -> None:
     """Remove everything from the cache."""
     import interreflect.cache as cache
 
-    print(f"removed {cache.clear() / 2**20:.1f} MiB from {cache.folder()}")
+    print(f"removed {cache.clear()} files from {cache.folder()}")
 
 
 def _print_table(what: str, rows: list[tuple[str, ...]]) -> None:
