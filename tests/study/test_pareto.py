@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from interreflect.study.pareto import best, cheapest, configurations, equal_error, equal_time, pareto
+from interreflect.study.pareto import best, cheapest, configurations, equal_error, equal_time, hypervolume, pareto
 from interreflect.study.records import Record, Records
 
 # moocore's own example of a front, in (milliseconds, relmse); (16, .25) and (20, .5) are dominated
@@ -105,6 +105,12 @@ def test_equal_time_ranks_every_methods_most_accurate_within_the_budget():
 def test_equal_error_ranks_every_methods_fastest_within_the_bound():
     table = equal_error(records(record(5, 0.3, "a"), record(9, 0.2, "a"), record(8, 0.1, "b"), record(50, 0.01, "b")), relmse=0.2)
     assert list(table[["method", "milliseconds"]].itertuples(index=False, name=None)) == [("b", 8), ("a", 9)]
+
+
+def test_the_hypervolume_is_the_area_below_the_reference_point():
+    # decades below (10^4 ms, 1): (1, .1) dominates 4 x 1, (100, .001) adds 2 x 2
+    table = hypervolume(records(record(1, 0.1), record(100, 0.001), record(1000, 0.01), record(5, 2.0, "b")))
+    assert dict(zip(table["method"], table["hypervolume"], strict=True)) == pytest.approx({"fake": 8.0, "b": 0.0})
 
 
 def test_errors_below_the_truths_noise_are_not_ranked():

@@ -60,6 +60,8 @@ def test_an_unknown_knob_is_a_type_error():
         ("size", (4,)),
         ("seeds", [-1]),
         ("seeds", [0.5]),
+        ("seeds", [1, 1]),
+        ("scenes", [Scene(), Scene("again")]),
         ("bounces", -1),
         ("bounces", "all"),
         ("repeats", 0),

@@ -27,6 +27,8 @@ NOISE_OF = {  # an error that the truth's noise bounds -> the column that holds 
 ERRORS = (*NOISE_OF, "flip")
 MERIT = "ssim"  # better where larger
 WITHIN_NOISE = "within noise"
+REFERENCE_POINT = (1e4, 1.0)  # 10 s a frame and an error of 1: what no front is worth beyond; fixed, so that areas compare
+TINY = 1e-12  # an error of 0 has no logarithm
 PER_SEED = ("seed", "status", "failure", "key")  # columns of cells that configurations do not have
 
 
@@ -97,6 +99,27 @@ def equal_error(records: Records, **bound: float) -> pd.DataFrame:
         ranked = _stacked([_fastest(group, y, limit) for _, group in view.groupby("method", sort=False)], view)
         picked.append(ranked.sort_values("milliseconds", kind="stable"))
     return _joined(picked, records)
+
+
+def hypervolume(records: Records, x: str = "milliseconds", y: str = "relmse") -> pd.DataFrame:
+    """How much a method's front dominates, per scene, camera and bounces: its area in log-log below the fixed point `REFERENCE_POINT`.
+
+    In decades of time x decades of error; 0 for a method that never gets below the point. ValueError unless `x` is a time and
+    `y` an error.
+    """
+    import moocore
+    import pandas as pd
+
+    if x not in COSTS or y not in ERRORS:
+        raise ValueError(f"hypervolume needs a time ({', '.join(COSTS)}) and an error ({', '.join(ERRORS)}), got {x!r} and {y!r}")
+    rows = []
+    for view in _views(records, x, y):
+        for method, group in view.groupby("method", sort=False):
+            points = np.log10(np.maximum(group[[x, y]].to_numpy(float), TINY))
+            below = points[(points < np.log10(REFERENCE_POINT)).all(axis=1)]
+            area = float(moocore.hypervolume(below, ref=np.log10(REFERENCE_POINT))) if len(below) else 0.0
+            rows.append((*group.iloc[0][VIEW], method, area))
+    return pd.DataFrame(rows, columns=[*VIEW, "method", "hypervolume"])
 
 
 def _fastest(view: pd.DataFrame, y: str, limit: float) -> pd.DataFrame:

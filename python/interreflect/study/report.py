@@ -16,7 +16,7 @@ import numpy.typing as npt
 from interreflect import charts, metrics
 from interreflect.study.files import replacing
 from interreflect.study.page import PAGE
-from interreflect.study.pareto import VIEW, configurations, equal_error, pareto
+from interreflect.study.pareto import VIEW, configurations, equal_error, hypervolume, pareto
 from interreflect.study.records import OK, Record, Records
 
 if TYPE_CHECKING:
@@ -94,11 +94,13 @@ def _equal_error(records: Records) -> str:
     for bound in ERROR_BOUNDS:
         fastest = equal_error(records, relmse=bound)
         parts.append(fastest.assign(bound=f"relMSE at most {bound:g}, ms"))
-    joined = pd.concat([part for part in parts if len(part)] or [parts[0]])
-    if joined.empty:
+    area = hypervolume(records)
+    if area.empty:
         return ""
-    wide = joined.pivot_table(index=[*VIEW, "method"], columns="bound", values="milliseconds", sort=False)
-    return _table(wide.reset_index())
+    joined = pd.concat(parts, ignore_index=True)
+    wide = joined.pivot_table(index=[*VIEW, "method"], columns="bound", values="milliseconds", sort=False).reset_index()
+    words = "Hypervolume: area of the front in log-log below 10 s and relMSE 1, in decades of time x decades of error."
+    return _table(area.merge(wide, how="left", on=[*VIEW, "method"])) + f"<p>{words}</p>"
 
 
 def _configurations(records: Records) -> str:

@@ -56,6 +56,8 @@ class Study:
         if len(self.size) != 2:
             raise ValueError(f"Study.size must be (width, height), got {self.size}")
         _set(self, "seeds", tuple(_whole("seeds", seed, 0) for seed in self.seeds))
+        if len(set(self.seeds)) < len(self.seeds):
+            raise ValueError(f"Study.seeds must differ, got {self.seeds}")
         if self.bounces is not None and self.bounces != "method":
             _set(self, "bounces", _whole("bounces", self.bounces, 0))
         for field in ("repeats", "max_repeats"):
@@ -77,7 +79,10 @@ class Study:
                 raise ValueError(f"Study.methods[{index}] is the same as methods[{first}]: {method!r}")
 
     def _check_cameras(self) -> None:
+        first: dict[str, int] = {}
         for index, scene in enumerate(self.scenes):
+            if first.setdefault(scene.hash, index) != index:
+                raise ValueError(f"Study.scenes[{index}] is the same as scenes[{first[scene.hash]}]; one scene may have several cameras")
             if not scene.cameras:
                 raise ValueError(f"Study.scenes[{index}] ({scene.name!r}) has no camera")
         if self.cameras is None:
