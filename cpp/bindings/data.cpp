@@ -52,6 +52,7 @@ Material make_material(Float3 albedo, int albedo_map, Float3 specular, float rou
     static const std::map<std::string, Lobe> lobes{
         {"ggx", Lobe::ggx}, {"phong", Lobe::phong}, {"blinn-phong", Lobe::blinn_phong}};
     if (!lobes.contains(lobe)) throw py::value_error("lobe must be one of ggx, phong, blinn-phong, got '" + lobe + "'");
+    if (!(roughness >= 0.0f && roughness <= 1.0f)) throw py::value_error("roughness must lie in [0, 1]");
     // Roughness 0 means the smallest width that single precision evaluates well.
     constexpr float least_alpha = 1e-3f;
     Material m;
@@ -60,6 +61,15 @@ Material make_material(Float3 albedo, int albedo_map, Float3 specular, float rou
     m.exponent = exponent, m.lobe = lobes.at(lobe), m.emission = vector3(emission), m.emission_map = emission_map;
     m.mask = mask, m.two_sided = two_sided;
     return m;
+}
+
+Camera make_camera(Float3 position, Float3 target, Float3 up, float fov_x) {
+    const Camera camera{vector3(position), vector3(target), vector3(up), fov_x};
+    if (!(fov_x > 0.0f && fov_x < 180.0f)) throw py::value_error("fov_x must lie in (0, 180) degrees, got " + std::to_string(fov_x));
+    const CameraRays rays(camera, 1, 1);
+    if (!std::isfinite(glm::dot(rays.corner, rays.right_step)) || !std::isfinite(glm::length(camera.position)))
+        throw py::value_error("position, target and up must be finite, position not target, and up not parallel to the view");
+    return camera;
 }
 
 mat4 matrix4(const py::object& object, const char* name) {
@@ -102,7 +112,8 @@ Environment make_environment(Float3 radiance, const py::object& image, const py:
     e.radiance = vector3(radiance);
     if (!image.is_none()) {
         const auto array = exact_array<float>(image, "image");
-        if (array.ndim() != 3 || array.shape(2) != 3) throw py::value_error("image must have shape (height, width, 3)");
+        if (array.ndim() != 3 || array.shape(2) != 3 || array.size() == 0)
+            throw py::value_error("image must have shape (height, width, 3) with at least one pixel");
         e.height = static_cast<int>(array.shape(0)), e.width = static_cast<int>(array.shape(1));
         const auto* texels = reinterpret_cast<const vec3*>(array.data());
         e.image.assign(texels, texels + static_cast<std::size_t>(e.width) * e.height);
@@ -114,6 +125,10 @@ Environment make_environment(Float3 radiance, const py::object& image, const py:
         for (int row = 0; row < 3; ++row)
             for (int column = 0; column < 3; ++column)
                 e.world_from_light[column][row] = static_cast<float>(array.at(row, column));
+        const mat3 product = e.world_from_light * glm::transpose(e.world_from_light);
+        for (int k = 0; k < 9; ++k)
+            if (!(std::fabs(product[k / 3][k % 3] - (k % 4 == 0 ? 1.0f : 0.0f)) < 1e-4f))
+                throw py::value_error("rotation must be a rotation matrix");
     }
     return e;
 }
@@ -202,9 +217,7 @@ void bind_data(py::module_& m) {
              py::arg("lobe") = "ggx", py::arg("emission") = Float3{0, 0, 0}, py::arg("emission_map") = -1, py::arg("mask") = -1,
              py::arg("two_sided") = true);
     py::class_<Camera>(m, "Camera")
-        .def(py::init([](Float3 position, Float3 target, Float3 up, float fov_x) {
-                 return Camera{vector3(position), vector3(target), vector3(up), fov_x};
-             }),
+        .def(py::init(&make_camera),
              py::arg("position"), py::arg("target"), py::arg("up"), py::arg("fov_x"));
     py::class_<Geometry, std::shared_ptr<Geometry>>(m, "Geometry")
         .def(py::init([](const py::list& meshes, const py::list& instances) {

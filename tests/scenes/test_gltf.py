@@ -58,14 +58,6 @@ def test_a_mesh_in_many_nodes_is_stored_once(tmp_path: Path) -> None:
     assert np.allclose(world(scene, 3), np.add(SQUARE, [3, 0, 0]))
 
 
-def test_a_mirrored_node_keeps_its_fronts_in_front(tmp_path: Path) -> None:
-    scene = load(tmp_path, nodes=[{"mesh": 0, "scale": [-2, 1, 1]}])
-    points = world(scene).reshape(-1, 3, 3)
-    normals = np.cross(points[:, 1] - points[:, 0], points[:, 2] - points[:, 0])
-    assert (normals[:, 2] > 0).all() and np.isclose(points[..., 0].min(), -2)
-    assert np.linalg.det(scene.meshes[0].transform[:3, :3]) > 0
-
-
 def test_a_tree_deeper_than_any_stack_loads(tmp_path: Path) -> None:
     deep = 20_000
     nodes: list[dict[str, Any]] = [{"children": [k + 1], "translation": [1, 0, 0]} for k in range(deep)]

@@ -112,13 +112,6 @@ def test_the_same_file_again_is_an_instance_stored_once(tmp_path: Path) -> None:
     assert np.array_equal(scene.bounds, [[0, 0, 0], [5, 1, 0]])
 
 
-def test_a_mirroring_transform_keeps_fronts_in_front(tmp_path: Path) -> None:
-    scene = load(tmp_path, GEOMETRY + "transform = [-1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1]\n")
-    mesh = scene.meshes[0]
-    corners = mesh.positions[mesh.triangles][0] @ mesh.transform[:3, :3].T
-    assert np.cross(corners[1] - corners[0], corners[2] - corners[0])[2] > 0 and corners[:, 0].min() == -1
-
-
 def test_normals_are_the_files_flat_or_smooth(tmp_path: Path) -> None:
     # a square folded by 90 degrees along its diagonal (1,0,0)-(0,1,0), in two materials; the file's normals point along x
     obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 0 1\nvn 1 0 0\nf 1//1 2//1 3//1\nusemtl b\nf 3//1 2//1 4//1\n"

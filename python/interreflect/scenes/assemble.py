@@ -59,7 +59,7 @@ class _Builder:
     used: set[str] = field(default_factory=set)
     _files: dict[str, GeometryFile] = field(default_factory=dict)
     _cleaned: dict[tuple[str, str], list[Part]] = field(default_factory=dict)
-    _shapes: dict[tuple[str, str, int, bool], Mesh] = field(default_factory=dict)
+    _shapes: dict[tuple[str, str, int], Mesh] = field(default_factory=dict)
     _images: dict[tuple[str, str], Any] = field(default_factory=dict)
     _materials: dict[tuple[str, str | None, bool], Material | None] = field(default_factory=dict)
     _without_texcoords: dict[str, int] = field(default_factory=dict)
@@ -77,12 +77,8 @@ class _Builder:
             material = self._material(geometry, file, name, part.texcoords is not None)
             if material is None or not len(part.triangles):
                 continue
-            transform = geometry.transform @ placed.transform
-            mirrors = float(np.linalg.det(transform[:3, :3])) < 0
-            shape = self._shape((*key, placed.part, mirrors), part)
-            if mirrors:
-                transform = transform @ _MIRROR
-            self.meshes.append(_placed(geometry, shape, transform, material))
+            shape = self._shape((*key, placed.part), part)
+            self.meshes.append(_placed(geometry, shape, geometry.transform @ placed.transform, material))
 
     def _file(self, geometry: Geometry) -> GeometryFile:
         if geometry.file not in self._files:
@@ -95,16 +91,12 @@ class _Builder:
             self.cameras[free] = _moved_camera(camera, geometry)
         return file
 
-    def _shape(self, key: tuple[str, str, int, bool], part: Part) -> Mesh:
-        """The part as a mesh, made once and then shared; mirrored in x where its transform mirrors, so that fronts stay fronts."""
+    def _shape(self, key: tuple[str, str, int], part: Part) -> Mesh:
+        """The part as a mesh, made once and then shared."""
         if key not in self._shapes:
-            positions, triangles, normals = part.positions, part.triangles, part.normals
-            if key[3]:
-                flip = np.array([-1, 1, 1], np.float32)
-                positions, triangles = positions * flip, np.ascontiguousarray(triangles[:, ::-1])
-                normals = None if normals is None else normals * flip
             where = f"{shown(key[0])}: "
-            self._shapes[key] = checked(where, lambda: Mesh(positions, triangles, normals=normals, texcoords=part.texcoords), "")
+            arrays = {"normals": part.normals, "texcoords": part.texcoords}
+            self._shapes[key] = checked(where, lambda: Mesh(part.positions, part.triangles, **arrays), "")
         return self._shapes[key]
 
     def _material(self, geometry: Geometry, file: GeometryFile, name: str | None, has_texcoords: bool) -> Material | None:
@@ -153,9 +145,6 @@ class _Builder:
 
     def dropped_maps(self) -> list[str]:
         return [f"{where}: {count} maps dropped for want of texture coordinates" for where, count in self._without_texcoords.items()]
-
-
-_MIRROR: NDArray[np.float64] = np.diag([-1.0, 1.0, 1.0, 1.0])
 
 
 def read_geometry(path: str, folder: Folder) -> GeometryFile:

@@ -24,7 +24,8 @@ class Mesh(Content):
 
     positions: (n, 3), scene units. triangles: (m, 3) integers below n, counter-clockwise seen from the front.
     normals: (n, 3) of shading, made unit length, or None: flat. texcoords: (n, 2) or None.
-    body: meshes of one body move together; "world" never moves. transform: (4, 4) from the mesh to its body, column vectors.
+    body: meshes of one body move together; "world" never moves. transform: (4, 4) from the mesh to its body, column vectors;
+    where it mirrors, fronts stay in front.
 
     Arrays are kept read-only as float32 and uint32, copied where they are not that already. Raises ValueError that names the
     argument: wrong shape or dtype, non-finite numbers, an index out of range, a normal without length, a singular transform.
