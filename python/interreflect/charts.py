@@ -7,6 +7,7 @@ dark page.
 from __future__ import annotations
 
 import math
+import textwrap
 from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -64,8 +65,9 @@ def speed_accuracy(records: Records, x: str = "milliseconds", y: str = "relmse",
         ax.margins(0.12)
         best = front[(front[VIEW] == list(view)).all(axis=1) & (front[x] > 0) & ((front[y] > 0) | (y == MERIT))]
         ax.scatter(best[x], best[y], s=110, facecolors="none", edgecolors=_theme(dark)["ink"], linewidths=0.8, zorder=4)
-        _name_points(ax, best.head(NAMED_POINTS), x, y, _varied(records), dark)
+        _name_points(ax, best.head(NAMED_POINTS), x, y, varied(records), dark)
         _noise_band(ax, rows, y, dark)
+        _few_ticks(ax, y != MERIT)
         ax.set_title(view_title(view), fontsize=9)
         ax.set(xlabel=LABELS[x], ylabel=LABELS[y])
     _legend(figure, axes, dark)
@@ -84,7 +86,7 @@ def stages(records: Records, dark: bool = False) -> Figure:
     columns.append("stage.other.milliseconds")
     groups = list(table.groupby([*VIEW, "method"], sort=False))
     figure, axes = _rows([len(rows) for _, rows in groups], dark)
-    varied = _varied(records)
+    told_apart = varied(records)
     for ax, (group, rows) in zip(axes, groups, strict=True):
         left, places = np.zeros(len(rows)), np.arange(len(rows))
         for index, column in enumerate(columns):
@@ -94,7 +96,7 @@ def stages(records: Records, dark: bool = False) -> Figure:
             label = column.removeprefix("stage.").removesuffix(".milliseconds")
             ax.barh(places, width, left=left, color=colour, hatch=hatch, label=label if width.any() else None, height=0.7)
             left += width
-        ax.set_yticks(places, [_knobs(row, varied) or str(group[-1]) for _, row in rows.iterrows()])
+        ax.set_yticks(places, [_knobs(row, told_apart) or str(group[-1]) for _, row in rows.iterrows()])
         ax.invert_yaxis()
         ax.set_title(f"{group[-1]}: {view_title(group[:-1])}", fontsize=9)
         ax.set(xlabel=LABELS["milliseconds"])
@@ -120,11 +122,11 @@ def images(records: Records, limit: int = 6, dark: bool = False) -> Figure:
         upper, lower = grid[2 * row], grid[2 * row + 1]
         truth = records.truth(picked[0])[0]
         upper[0].imshow(metrics.tone_map(truth, truth))
-        upper[0].set_title(f"truth, relMSE {picked[0].noise:.1e}\n{view_title(view)}", fontsize=8)
+        upper[0].set_title(textwrap.fill(f"{view_title(view)}: truth, relMSE {picked[0].noise:.1e}", 40), fontsize=8)
         for ax, below, record in zip(upper[1:], lower[1:], picked, strict=False):
             image = records.images(record)[0]
             ax.imshow(metrics.tone_map(image, truth))
-            ax.set_title(f"{label(records, record.row())}\n{record.milliseconds:.3g} ms", fontsize=8)
+            ax.set_title(f"{label(records, record.row())}\n{record.milliseconds:,.{1 if record.milliseconds < 100 else 0}f} ms", fontsize=8)
             mapped = below.imshow(metrics.error_map(image, truth), cmap="magma", norm=_error_norm())
             below.set_title(f"relMSE {record.metrics['relmse']:.2e}", fontsize=8)
     for ax in grid.flat:
@@ -228,7 +230,20 @@ def _noise_band(ax: Axes, rows: pd.DataFrame, y: str, dark: bool) -> None:
     ax.set_ylim(lowest / 2, float(rows[y].max()) * 2)
 
 
-def _varied(records: Records) -> dict[str, list[str]]:
+def _few_ticks(ax: Axes, also_y: bool) -> None:
+    """Plain numbers at 1, 2 and 5 where an axis spans less than two decades; powers of ten where it spans more."""
+    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
+    for axis, (low, high) in ((ax.xaxis, ax.get_xlim()), (ax.yaxis, ax.get_ylim())):
+        if axis is ax.yaxis and not also_y:
+            continue
+        axis.set_minor_formatter(NullFormatter())
+        if high < 100 * low:
+            axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+            axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+
+
+def varied(records: Records) -> dict[str, list[str]]:
     """Method -> the knob columns that differ between its measured records: those that tell its points apart."""
     measured = records.table[records.table["status"] == OK]
     names = records.knob_columns
@@ -238,11 +253,11 @@ def _varied(records: Records) -> dict[str, list[str]]:
 
 def label(records: Records, row: Any) -> str:
     """The method of a row of the table, with the knobs that tell it from its siblings."""
-    return f"{row['method']} {_knobs(row, _varied(records))}".strip()
+    return f"{row['method']} {_knobs(row, varied(records))}".strip()
 
 
-def _knobs(row: Any, varied: Mapping[str, Sequence[str]]) -> str:
-    return ", ".join(_short(name, row[name]) for name in varied.get(row["method"], ()))
+def _knobs(row: Any, names: Mapping[str, Sequence[str]]) -> str:
+    return ", ".join(_short(name, row[name]) for name in names.get(row["method"], ()))
 
 
 def _short(name: str, value: Any) -> str:
@@ -250,11 +265,11 @@ def _short(name: str, value: Any) -> str:
     return text if isinstance(value, str) else f"{name.rpartition('.')[2]} {text}"
 
 
-def _name_points(ax: Axes, rows: pd.DataFrame, x: str, y: str, varied: Mapping[str, Sequence[str]], dark: bool) -> None:
+def _name_points(ax: Axes, rows: pd.DataFrame, x: str, y: str, told_apart: Mapping[str, Sequence[str]], dark: bool) -> None:
     low, high = ax.get_xlim()
     ax.set_xlim(low, high * (high / low) ** 0.25)  # room for the last one's words
     for _, row in rows.iterrows():
-        text = _knobs(row, varied)
+        text = _knobs(row, told_apart)
         ax.annotate(text, (row[x], row[y]), xytext=(7, 5), textcoords="offset points", fontsize=6.5, color=_theme(dark)["ink"])
 
 

@@ -107,8 +107,8 @@ def _configurations(records: Records) -> str:
     table = configurations(records)
     if table.empty:
         return ""
-    varied = [name for name in records.knob_columns if table[name].nunique(dropna=False) > 1]
-    return _table(table[[*VIEW, "method", *varied, *MEASURED]])
+    told_apart = dict.fromkeys(name for names in charts.varied(records).values() for name in names)
+    return _table(table[[*VIEW, "method", *told_apart, *MEASURED]])
 
 
 def _failures(records: Records) -> str:
