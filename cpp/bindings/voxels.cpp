@@ -49,7 +49,13 @@ void bind_domain(py::module_& m) {
                    ", voxel_size=" + py::repr(py::float_(d.voxel_size)).cast<std::string>() +
                    ", cells=" + py::repr(py::cast(array3(d.cells))).cast<std::string>() + ")";
         });
-    bind_technique<Grid>(m);
+    const py::object grid = bind_technique<Grid>(m);
+    grid.attr("place") = py::cpp_function(
+        [](const py::object& self, const py::object& scene, const py::object& camera) {
+            return py::module_::import("interreflect.stages").attr("place")(self, scene, camera);
+        },
+        py::name("place"), py::is_method(grid), py::arg("scene"), py::arg("camera") = py::none(),
+        "The domain of this grid over a Scene's bounds: `interreflect.stages.place`.");
     m.def(
         "place",
         [](const Grid& grid, const BoundScene& scene, const Camera* camera) {

@@ -65,6 +65,13 @@ Polygon clip(const std::array<vec3, 3>& p) {
     return polygon;
 }
 
+float area_of(const Polygon& polygon) {
+    vec3 sum{0};
+    for (int i = 1; i + 1 < polygon.count; ++i)
+        sum += glm::cross(polygon.corner[i] - polygon.corner[0], polygon.corner[i + 1] - polygon.corner[0]);
+    return 0.5f * glm::length(sum);
+}
+
 /// Barycentric coordinates of the second and third corner.
 vec2 barycentric(const std::array<vec3, 3>& p, const vec3& at) {
     const vec3 e1 = p[1] - p[0], e2 = p[2] - p[0], d = at - p[0], n = glm::cross(e1, e2);
@@ -76,16 +83,19 @@ vec2 barycentric(const std::array<vec3, 3>& p, const vec3& at) {
 void add_part(const VoxelTriangle& t, const std::array<vec3, 3>& local, const Polygon& part, const ivec3& cell, int samples,
               ContributionSink& sink) {
     const bool uniform = t.albedo_map == nullptr && t.emission_map == nullptr && t.mask == nullptr;
+    const float whole = area_of(part);
+    const float footprint = std::min(t.area, 1.0f / static_cast<float>(samples));
     for (int i = 1; i + 1 < part.count; ++i) {
         const vec3 a = part.corner[0], b = part.corner[i], c = part.corner[i + 1];
         const float area = 0.5f * glm::length(glm::cross(b - a, c - a));
-        if (!(area > 0.0f)) continue;
+        if (!(area > 1e-5f * whole)) continue;  // corners in a row: a strip that is there by rounding
         if (uniform) {
             sink.add(cell, (a + b + c) / 3.0f, area, true, t.material->albedo, t.material->emission);
             continue;
         }
-        const float each = area / static_cast<float>(samples);
-        for (int k = 0; k < samples; ++k) {
+        const int count = std::clamp(static_cast<int>(std::ceil(area * static_cast<float>(samples))), 1, samples);
+        const float each = area / static_cast<float>(count);
+        for (int k = 0; k < count; ++k) {
             // The R2 sequence [Roberts 2018]: low discrepancy, no seed.
             const float r = static_cast<float>(k) + 0.5f;
             const vec2 u{glm::fract(r * 0.7548776662f), glm::fract(r * 0.5698402910f)};
@@ -95,8 +105,8 @@ void add_part(const VoxelTriangle& t, const std::array<vec3, 3>& local, const Po
             const vec2 uv = t.texcoord_at(weights.x, weights.y);
             const bool solid = t.mask == nullptr || t.mask->solid(uv);
             vec3 albedo = t.material->albedo, emission = t.material->emission;
-            if (t.albedo_map != nullptr) albedo *= t.albedo_map->bilinear(uv, t.level(*t.albedo_map, each));
-            if (t.emission_map != nullptr) emission *= t.emission_map->bilinear(uv, t.level(*t.emission_map, each));
+            if (t.albedo_map != nullptr) albedo *= t.albedo_map->bilinear(uv, t.level(*t.albedo_map, footprint));
+            if (t.emission_map != nullptr) emission *= t.emission_map->bilinear(uv, t.level(*t.emission_map, footprint));
             sink.add(cell, position, each, solid, albedo, emission);
         }
     }
@@ -112,7 +122,10 @@ void overlap_triangle(const VoxelTriangle& t, const ivec3& cells, int samples, C
             for (int x = first.x; x <= last.x; ++x) {
                 const vec3 centre = vec3(ivec3(x, y, z)) + 0.5f;
                 const std::array<vec3, 3> local{t.corner[0] - centre, t.corner[1] - centre, t.corner[2] - centre};
-                if (overlaps(local, t.normal)) add_part(t, local, clip(local), {x, y, z}, samples, sink);
+                if (!overlaps(local, t.normal)) continue;
+                const Polygon part = clip(local);
+                // Coordinates of a thousand voxels are known to 1e-4: a thinner strip of a triangle is a touch by rounding.
+                if (area_of(part) > 1e-4f * std::min(t.area, 1.0f)) add_part(t, local, part, {x, y, z}, samples, sink);
             }
 }
 

@@ -14,8 +14,7 @@ struct ExactOverlap {
     static constexpr auto description = describe(
         "ExactOverlap", "Every cell that a triangle overlaps, by separating axes; means over the triangle's part in the cell.",
         Source{"Akenine-Moeller 2001"},
-        Param{"samples", &ExactOverlap::samples, "texture samples of a triangle's part in a cell", Unit::samples,
-              between(1, 4096)});
+        Param{"samples", &ExactOverlap::samples, "texture samples on a face of a voxel's area", Unit::samples, between(1, 4096)});
 };
 
 VoxelGrid voxelize(const ExactOverlap& technique, const Scene& scene, const Domain& domain);
