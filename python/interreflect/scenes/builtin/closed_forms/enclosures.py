@@ -46,7 +46,7 @@ def one_emitting_face(albedo: float = 0.5, bounces: int | None = None) -> Closed
         weights=(1 / 6, 1 / 6, 4 / 6),
         scale=np.pi,
         tolerance=1e-3,
-        reason="radiosity changes quickest along the emitter's edges: midpoints of 48 x 48 pixels, error of second order",
+        reason="radiosity changes quickest along the emitter's edges: midpoints of 32 x 32 pixels, error of second order",
     )
 
 

@@ -14,7 +14,7 @@ from interreflect.scenes.values import Camera, Material, Scene
 
 RHO = 0.5  # of receivers; it cancels
 PER_IRRADIANCE = np.pi / RHO  # a receiver's irradiance over its radiance
-MIDPOINTS = "midpoints of 128 x 128 pixels, error of second order"
+MIDPOINTS = "midpoints of 64 x 64 pixels, error of second order"
 NARROW = "a picture 1 degree wide: second order in the shift from the point"
 
 
@@ -54,9 +54,9 @@ def coaxial_disks(radius: float = 1, other_radius: float = 1, distance: float = 
         bounces=0,
         cameras=("receiver",),
         scale=PER_IRRADIANCE * share,
-        size=(256, 256),
+        size=(128, 128),
         tolerance=2e-3,
-        reason="the receiver's rim in 256 x 256 pixels",
+        reason="the receiver's rim in 128 x 128 pixels",
     )
 
 
@@ -114,7 +114,7 @@ def _received(row: int, quantity: str, value: float, scene: Scene, camera: str) 
         bounces=0,
         cameras=(camera,),
         scale=PER_IRRADIANCE,
-        size=(128, 128),
+        size=(64, 64),
         tolerance=1e-3,
         reason=MIDPOINTS,
     )

@@ -45,7 +45,7 @@ class ClosedForm:
     weights: Sequence[float] = (1.0,)
     scale: float = 1.0
     offset: float = 0.0
-    size: tuple[int, int] = (48, 48)
+    size: tuple[int, int] = (32, 32)
     transport: str = "light"
     tolerance: float = 1e-3
     reason: str

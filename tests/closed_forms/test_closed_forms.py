@@ -1,0 +1,60 @@
+"""Closed forms over every integrator to which they apply."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import interreflect as ir
+
+CASES = [
+    (1, {}), (1, {"shape": "sphere", "bounces": 0}), (1, {"albedo": 0.8, "bounces": 0}),
+    (2, {}), (2, {"bounces": 0}),
+    (3, {}), (3, {"part": "direct"}), (3, {"part": "indirect"}),
+    (4, {}), (4, {"bounces": None}), (4, {"cap": 60}),
+    (5, {}), (5, {"distance": 0.5}), (6, {}), (7, {}), (7, {"other_radius": 0.5, "distance": 2}),
+    (8, {}), (8, {"offset": 1}), (9, {}), (10, {}), (11, {}), (12, {}), (13, {}), (13, {"bounces": 0}),
+    (14, {}), (15, {}), (17, {}), (17, {"alpha": 0.25}),
+]  # fmt: skip
+SEEDS = range(8)
+SPP = {4: 32, 10: 64, 13: 48}  # noisier than the rest, which take 8
+
+
+def path_tracing(**knobs):
+    def pictures(case, seed):
+        method = ir.methods.PathTracing(spp=SPP.get(case.row, 8), bounces=case.bounces, **knobs)
+        return [method.render(case.scene, camera=name, size=case.size, seed=seed) for name in case.cameras]
+
+    return pictures
+
+
+INTEGRATORS = {
+    "path tracing at pixel centres": path_tracing(pattern=32),
+    "path tracing over whole pixels": path_tracing(pixel="box", pattern=32),
+}
+
+
+@pytest.mark.parametrize("integrator", INTEGRATORS)
+@pytest.mark.parametrize(("row", "knobs"), CASES)
+def test_a_picture_shows_the_closed_form(row, knobs, integrator):
+    case = ir.scenes.closed_form(row, **knobs)
+    values = np.array([case.measure(*INTEGRATORS[integrator](case, seed)) for seed in SEEDS])
+    noise = values.std(ddof=1) / np.sqrt(len(values))
+    assert noise < 0.005 * case.value, "too noisy to tell"
+    # 5.4 standard errors: one test in a thousand, by Student's t of 8 seeds
+    assert abs(values.mean() - case.value) < case.tolerance * case.value + 5.4 * noise, (values.mean(), case.value, noise)
+
+
+@pytest.mark.parametrize("row", [5, 6])
+def test_a_measuring_camera_sees_its_square_and_nothing_else(row):
+    case = ir.scenes.closed_form(row)
+    gbuffer = ir.trace_gbuffer(case.scene, case.scene.cameras[case.camera], (50, 50))
+    position = np.asarray(gbuffer.position)
+    centres = (np.arange(50) + 0.5) / 50 - 0.5
+    assert np.asarray(gbuffer.albedo) == pytest.approx(0.5)
+    assert np.unique(np.round(position[..., 0], 4)) == pytest.approx(centres, abs=1e-4)
+    assert np.unique(np.round(position[..., 2], 4)) == pytest.approx(centres, abs=1e-4)
+
+
+def test_only_spherical_harmonics_are_not_light():
+    assert [row for row in range(1, 18) if ir.scenes.closed_form(row).transport != "light"] == [16]
