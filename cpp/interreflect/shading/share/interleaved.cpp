@@ -1,0 +1,150 @@
+#include "shading/share/interleaved.h"
+
+#include <vector>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "shading/share/interleaved.cpp"
+#include <hwy/foreach_target.h>
+// clang-format off
+#include <hwy/highway.h>
+// clang-format on
+
+#include "math/parallel.h"
+#include "shading/share/window.h"
+
+// Compiled once for every vector width; the widest that the machine has is chosen at run time.
+HWY_BEFORE_NAMESPACE();
+namespace interreflect {
+namespace HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+constexpr int padded = merge_tile_size + 2 * largest_halo, pad_row = padded + 8;
+
+/// A tile with its halo in parallel planes, so that a tap is an offset.
+struct Planes {
+    enum { px, py, pz, nx, ny, nz, r, g, b, a, weight, count };
+    alignas(64) float plane[count][padded * pad_row + 64];
+};
+
+/// Pixels outside the picture and pixels that hit nothing get normal 0, which no normal test passes.
+void load_tile(const GBuffer& gbuffer, const Buffer<vec4>& partial, const float* weights, int block_width, int block_height,
+               const Tile& tile, int halo, Planes& to) {
+    for (int y = tile.y0 - halo; y < tile.y1 + halo; ++y) {
+        const int row = (y - tile.y0 + largest_halo) * pad_row + largest_halo;
+        for (int x = tile.x0 - halo; x < tile.x1 + halo; ++x) {
+            const int at = row + x - tile.x0;
+            const bool inside = x >= 0 && y >= 0 && x < gbuffer.width && y < gbuffer.height;
+            const std::size_t pixel = inside ? static_cast<std::size_t>(y) * gbuffer.width + x : 0;
+            const bool hit = inside && gbuffer.triangle[pixel] != no_hit;
+            const vec3* position = gbuffer.position.data() + pixel;
+            const vec3* normal = gbuffer.normal.data() + pixel;
+            const vec4* value = partial.data() + pixel;
+            to.plane[Planes::px][at] = hit ? position->x : 0.0f;
+            to.plane[Planes::py][at] = hit ? position->y : 0.0f;
+            to.plane[Planes::pz][at] = hit ? position->z : 0.0f;
+            to.plane[Planes::nx][at] = hit ? normal->x : 0.0f;
+            to.plane[Planes::ny][at] = hit ? normal->y : 0.0f;
+            to.plane[Planes::nz][at] = hit ? normal->z : 0.0f;
+            to.plane[Planes::r][at] = hit ? value->x : 0.0f;
+            to.plane[Planes::g][at] = hit ? value->y : 0.0f;
+            to.plane[Planes::b][at] = hit ? value->z : 0.0f;
+            to.plane[Planes::a][at] = hit ? value->w : 0.0f;
+            to.plane[Planes::weight][at] = hit ? weights[x % block_width + block_width * (y % block_height)] : 0.0f;
+        }
+    }
+}
+
+/// Merges a vector of pixels at `at`.
+template <class D, class V = hn::Vec<D>>
+void merge_vector(D d, const Planes& from, int at, const Tap* taps, const int* first, int phases, V tolerance, float least_cosine,
+                  float* out) {
+    const auto load = [&](int plane, int offset) { return hn::LoadU(d, from.plane[plane] + at + offset); };
+    const V px = load(Planes::px, 0), py = load(Planes::py, 0), pz = load(Planes::pz, 0);
+    const V nx = load(Planes::nx, 0), ny = load(Planes::ny, 0), nz = load(Planes::nz, 0);
+    const V zero = hn::Zero(d), cosine = hn::Set(d, least_cosine);
+    V sum[4] = {zero, zero, zero, zero}, available = zero;
+    for (int phase = 0; phase < phases; ++phase) {
+        V part[4] = {zero, zero, zero, zero}, norm = zero, weight = zero;
+        for (int t = first[phase]; t < first[phase + 1]; ++t) {
+            const int o = taps[t].dx + pad_row * taps[t].dy;
+            const V along =
+                hn::MulAdd(nx, load(Planes::nx, o), hn::MulAdd(ny, load(Planes::ny, o), hn::Mul(nz, load(Planes::nz, o))));
+            const V off_plane =
+                hn::MulAdd(nx, hn::Sub(load(Planes::px, o), px),
+                           hn::MulAdd(ny, hn::Sub(load(Planes::py, o), py), hn::Mul(nz, hn::Sub(load(Planes::pz, o), pz))));
+            const auto same = hn::And(hn::Ge(along, cosine), hn::Le(hn::Abs(off_plane), tolerance));
+            const V w = hn::IfThenElseZero(same, hn::Set(d, taps[t].weight));
+            norm = hn::Add(norm, w);
+            weight = hn::IfThenElse(same, load(Planes::weight, o), weight);
+            for (int c = 0; c < 4; ++c) part[c] = hn::MulAdd(w, load(Planes::r + c, o), part[c]);
+        }
+        const V scale = hn::IfThenElseZero(hn::Gt(norm, zero), hn::Div(hn::Set(d, 1.0f), hn::Max(norm, hn::Set(d, 1e-6f))));
+        for (int c = 0; c < 4; ++c) sum[c] = hn::MulAdd(part[c], scale, sum[c]);
+        available = hn::Add(available, weight);
+    }
+    const V scale = hn::IfThenElseZero(hn::Gt(available, zero), hn::Div(hn::Set(d, 1.0f), hn::Max(available, hn::Set(d, 1e-6f))));
+    hn::StoreInterleaved4(hn::Mul(sum[0], scale), hn::Mul(sum[1], scale), hn::Mul(sum[2], scale), hn::Mul(sum[3], scale), d, out);
+}
+
+void merge_tile(const GBuffer& gbuffer, const Buffer<vec4>& partial, const float* weights, const Interleaved& share,
+                const Tap* taps, const int* first, int halo, const Tile& tile, Buffer<vec4>& merged) {
+    const hn::ScalableTag<float> d;
+    const int lanes = static_cast<int>(hn::Lanes(d));
+    thread_local Planes planes;
+    load_tile(gbuffer, partial, weights, share.width, share.height, tile, halo, planes);
+    const float least_cosine = std::fmax(std::cos(static_cast<float>(share.normal_angle) * degrees_to_radians), 1e-3f);
+    const vec3 eye = gbuffer.camera.position;
+    const float half = std::tan(0.5f * gbuffer.camera.fov_x * degrees_to_radians);
+    const float pixel = 2.0f * half / static_cast<float>(gbuffer.width) * static_cast<float>(share.plane_distance);
+    for (int y = tile.y0; y < tile.y1; ++y)
+        for (int x = tile.x0; x < tile.x1; x += lanes) {
+            const int at = (y - tile.y0 + largest_halo) * pad_row + largest_halo + x - tile.x0;
+            const auto ex = hn::Sub(hn::LoadU(d, planes.plane[Planes::px] + at), hn::Set(d, eye.x));
+            const auto ey = hn::Sub(hn::LoadU(d, planes.plane[Planes::py] + at), hn::Set(d, eye.y));
+            const auto ez = hn::Sub(hn::LoadU(d, planes.plane[Planes::pz] + at), hn::Set(d, eye.z));
+            const auto depth = hn::Sqrt(hn::MulAdd(ex, ex, hn::MulAdd(ey, ey, hn::Mul(ez, ez))));
+            alignas(64) float out[4 * HWY_MAX_BYTES / sizeof(float)];
+            merge_vector(d, planes, at, taps, first, share.width * share.height, hn::Mul(depth, hn::Set(d, pixel)), least_cosine,
+                         out);
+            const int valid = tile.x1 - x < lanes ? tile.x1 - x : lanes;
+            float* to = reinterpret_cast<float*>(merged.data() + static_cast<std::size_t>(y) * gbuffer.width + x);
+            for (int i = 0; i < 4 * valid; ++i) to[i] = out[i];
+        }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace interreflect
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace interreflect {
+
+HWY_EXPORT(merge_tile);
+
+Window::Window(int width, int height) {
+    for (int phase = 0; phase < width * height; ++phase) {
+        first.push_back(static_cast<int>(taps.size()));
+        for (int dy = -(height / 2); dy <= height / 2; ++dy)
+            for (int dx = -(width / 2); dx <= width / 2; ++dx) {
+                if ((dx + width) % width != phase % width || (dy + height) % height != phase / width) continue;
+                const bool x_end = 2 * std::abs(dx) == width, y_end = 2 * std::abs(dy) == height;
+                taps.push_back({dx, dy, (x_end ? 0.5f : 1.0f) * (y_end ? 0.5f : 1.0f)});
+            }
+    }
+    first.push_back(static_cast<int>(taps.size()));
+}
+
+Buffer<vec4> merge(const Interleaved& share, const GBuffer& gbuffer, std::span<const float> weights, Buffer<vec4> partial) {
+    const Window window(share.width, share.height);
+    const int halo = std::max(share.width, share.height) / 2;
+    Buffer<vec4> merged(gbuffer.pixels());
+    parallel_tiles(gbuffer.width, gbuffer.height, merge_tile_size, [&](const Tile& tile) {
+        HWY_DYNAMIC_DISPATCH(merge_tile)
+        (gbuffer, partial, weights.data(), share, window.taps.data(), window.first.data(), halo, tile, merged);
+    });
+    return merged;
+}
+
+}  // namespace interreflect
+#endif

@@ -1,0 +1,34 @@
+#pragma once
+#include <span>
+
+#include "data/gbuffer.h"
+#include "data/technique.h"
+
+namespace interreflect {
+
+/// Each pixel of a block does its part of the work; a pixel takes each other part from the neighbours that lie on its own surface
+/// and did that part: the mean over a window one block wide (a tent where the width is even), by which every part counts once.
+/// A part that no such neighbour did is left out and the others count for it.
+struct Interleaved {
+    int width = 2;
+    int height = 2;
+    double normal_angle = 25.0;
+    double plane_distance = 2.0;
+
+    bool operator==(const Interleaved&) const = default;
+    static constexpr auto description =
+        describe("Interleaved",
+                 "Each pixel of a block does its part of the work; the parts are merged over neighbours on the same surface.",
+                 Source{"Keller and Heidrich 2001; Segovia et al. 2006", "interleaved sampling, geometry-aware filter"},
+                 Param{"width", &Interleaved::width, "pixels of a block, horizontally", Unit::pixels, between(1, 8)},
+                 Param{"height", &Interleaved::height, "pixels of a block, vertically", Unit::pixels, between(1, 8)},
+                 Param{"normal_angle", &Interleaved::normal_angle,
+                       "largest angle between the shading normals of neighbours that share", Unit::degrees, between(0, 90)},
+                 Param{"plane_distance", &Interleaved::plane_distance,
+                       "largest distance of a neighbour from the pixel's plane, in widths of the pixel at its depth",
+                       Unit::pixels, above(0)});
+};
+
+Buffer<vec4> merge(const Interleaved& share, const GBuffer& gbuffer, std::span<const float> weights, Buffer<vec4> partial);
+
+}  // namespace interreflect

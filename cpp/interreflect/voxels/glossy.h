@@ -1,0 +1,15 @@
+/// Glossy: what does the pixels' glossy lobe reflect towards the camera, of the voxels and of the environment?
+///
+///   GlossyLight glossy(const Technique&, const Pyramid&, const GBuffer&, const Scene&, const Intersector&, seed);
+///
+/// Only pixels with a specular reflectance are visited. A lobe follows its own pixel's view and material, so this work is never
+/// shared between pixels. Exact counterpart: TracedRays.
+#pragma once
+#include <variant>
+
+#include "voxels/glossy/glossy_cone.h"
+#include "voxels/march/traced_rays.h"
+
+namespace interreflect {
+using Glossy = std::variant<TracedRays, GlossyCone>;
+}

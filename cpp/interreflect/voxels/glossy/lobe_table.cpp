@@ -1,0 +1,87 @@
+#include "voxels/glossy/lobe_table.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "math/sobol.h"
+#include "shading/brdf.h"
+
+namespace interreflect {
+namespace {
+
+constexpr int widths = 32, views = 32, samples = 256;
+
+float width_of(int i) { return std::max(static_cast<float>(i * i) / ((widths - 1) * (widths - 1)), 1e-3f); }
+float view_of(int i) { return std::max(static_cast<float>(i) / (views - 1), 0.01f); }
+
+SurfacePoint surface_with(Lobe lobe, float alpha, float specular) {
+    SurfacePoint point;  // geometric and shading normal are +z
+    point.lobe = lobe;
+    point.alpha = alpha;
+    point.exponent = std::max(2.0f / (alpha * alpha) - 2.0f, 0.0f);
+    point.specular = vec3(specular);
+    return point;
+}
+
+LobeCone integrate(Lobe lobe, float alpha, float cosine) {
+    const vec3 wo(-std::sqrt(1.0f - cosine * cosine), 0, cosine);  // so that the mirrored view leans towards +x
+    // Specular 1 is the lobe without Fresnel; a vanishing one leaves Schlick's (1 - cos)^5.
+    const SurfacePoint full = surface_with(lobe, alpha, 1.0f), edge = surface_with(lobe, alpha, 1e-6f);
+    vec3 mean(0);
+    LobeCone cone;
+    for (std::uint32_t i = 0; i < samples; ++i) {
+        const vec2 u = sobol_point(i, 0x10be);
+        const BrdfSample sample = sample_brdf(full, wo, 0.0f, u);
+        cone.scale += sample.weight.x / samples;
+        cone.bias += sample_brdf(edge, wo, 0.0f, u).weight.x / samples;
+        mean += sample.wi * (sample.weight.x / samples);
+    }
+    const float length = std::hypot(mean.x, mean.z);
+    if (cone.scale <= 0.0f || length <= 0.0f) return cone;
+    cone.direction = vec2(mean.x, mean.z) / length;
+    cone.half_angle = std::acos(std::clamp(2.0f * std::min(length / cone.scale, 1.0f) - 1.0f, -1.0f, 1.0f));
+    return cone;
+}
+
+}  // namespace
+
+LobeTable::LobeTable(Lobe lobe) : entries_(widths * views) {
+    // Not in parallel: a static's first use must not wait for work that may need it too.
+    for (int width = 0; width < widths; ++width)
+        for (int view = 0; view < views; ++view) entries_[width * views + view] = integrate(lobe, width_of(width), view_of(view));
+}
+
+LobeCone LobeTable::at(float alpha, float cosine) const {
+    const float x = std::sqrt(std::clamp(alpha, 0.0f, 1.0f)) * (widths - 1), y = std::clamp(cosine, 0.0f, 1.0f) * (views - 1);
+    const int i = std::min(static_cast<int>(x), widths - 2), j = std::min(static_cast<int>(y), views - 2);
+    const float fx = x - static_cast<float>(i), fy = y - static_cast<float>(j);
+    LobeCone sum;
+    sum.direction = vec2(0);
+    const auto add = [&](const LobeCone& entry, float weight) {
+        sum.scale += entry.scale * weight;
+        sum.bias += entry.bias * weight;
+        sum.direction += entry.direction * weight;
+        sum.half_angle += entry.half_angle * weight;
+    };
+    add(entries_[i * views + j], (1 - fx) * (1 - fy));
+    add(entries_[i * views + j + 1], (1 - fx) * fy);
+    add(entries_[(i + 1) * views + j], fx * (1 - fy));
+    add(entries_[(i + 1) * views + j + 1], fx * fy);
+    sum.direction = glm::normalize(sum.direction);
+    return sum;
+}
+
+const LobeTable& lobe_table(Lobe lobe) {
+    if (lobe == Lobe::phong) {
+        static const LobeTable phong(Lobe::phong);
+        return phong;
+    }
+    if (lobe == Lobe::blinn_phong) {
+        static const LobeTable blinn_phong(Lobe::blinn_phong);
+        return blinn_phong;
+    }
+    static const LobeTable ggx(Lobe::ggx);
+    return ggx;
+}
+
+}  // namespace interreflect

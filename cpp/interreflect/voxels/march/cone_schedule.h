@@ -1,0 +1,35 @@
+/// The steps of a cone: where it samples which level of the pyramid. They depend on the step's number only, so all cones of one
+/// angle share one table.
+#pragma once
+#include <vector>
+
+#include "data/voxel_grid.h"
+
+namespace interreflect {
+
+/// How cones are marched; lengths in voxels of the finest level or in diameters of the cone.
+struct ConeShape {
+    float half_angle = 0;      // radians
+    float first_diameter = 0;  // voxels, at the cone's start
+    float step = 0.5f;         // diameters
+    float level_bias = 0;      // levels added to log2(diameter / voxel)
+    float density = 1;         // optical depth of a texel as a multiple of what its opacity says
+};
+
+struct ConeSchedule {
+    struct Step {
+        float distance;  // from the cone's start, voxels
+        float reach;     // how far the filter reaches from the sample, voxels
+        float exponent;  // the step's opacity = 1 - (1 - opacity of the level)^exponent
+        float blend;     // share of the next coarser level, in [0, 1)
+        int level;       // the finer of the two levels
+    };
+    std::vector<Step> steps;
+};
+
+/// Steps until the cone has left any domain of the pyramid's size. The diameter starts at `first_diameter` and the first sample
+/// lies half a step away; distance and level then grow by one multiplication and one addition a step [Rehfeld et al. 2014, 4].
+/// There `alpha` must be the half angle (ERRATA).
+ConeSchedule make_schedule(const ConeShape& shape, const Pyramid& pyramid);
+
+}  // namespace interreflect
