@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "math/sobol.h"
+#include "math/owen_sobol.h"
 #include "shading/brdf.h"
 
 namespace interreflect {
@@ -30,7 +30,8 @@ LobeCone integrate(Lobe lobe, float alpha, float cosine) {
     vec3 mean(0);
     LobeCone cone;
     for (std::uint32_t i = 0; i < samples; ++i) {
-        const vec2 u = sobol_point(i, 0x10be);
+        const Bits2 bits = owen_sobol(i, 0x10be);
+        const vec2 u(unit_float(bits.x), unit_float(bits.y));
         const BrdfSample sample = sample_brdf(full, wo, 0.0f, u);
         cone.scale += sample.weight.x / samples;
         cone.bias += sample_brdf(edge, wo, 0.0f, u).weight.x / samples;

@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "data/environment.h"
+#include "math/owen_sobol.h"
 #include "math/parallel.h"
 #include "math/sampling.h"
-#include "math/sobol.h"
 #include "shading/brdf.h"
 #include "voxels/march/gather.h"
 #include "voxels/march/voxel_lookup.h"
@@ -53,6 +53,11 @@ struct Tracer {
     }
 };
 
+vec2 sample_point(int index, std::uint32_t key) {
+    const Bits2 bits = owen_sobol(static_cast<std::uint32_t>(index), key);
+    return {unit_float(bits.x), unit_float(bits.y)};
+}
+
 /// One ray of one pixel, and how much of the pixel's result it is.
 struct Sample {
     std::size_t pixel;
@@ -88,7 +93,7 @@ Counts trace_pixels(const Tracer& tracer, std::uint32_t stage, const Tile& tile,
             for (int x = tile.x0; x < tile.x1; ++x) {
                 const std::size_t pixel = static_cast<std::size_t>(y) * g.width + x;
                 if (!g.hit(pixel) || !wanted(pixel) || index >= tracer.samples_of(tracer.block.phase(x, y))) continue;
-                const auto [direction, weight] = choose(pixel, sobol_point(index, tracer.key(x, y, stage)));
+                const auto [direction, weight] = choose(pixel, sample_point(index, tracer.key(x, y, stage)));
                 if (glm::dot(direction, g.geometric_normal[pixel]) <= 0.0f || weight == vec3(0)) continue;
                 rays[count] = Ray{tracer.offset_origin(pixel), 0.0f, direction};
                 samples[count++] = {pixel, weight};

@@ -1,0 +1,58 @@
+"""Voxel cone tracing: the scene's reflected light in voxels, gathered at the pixels by cones."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar
+
+from interreflect import _core
+from interreflect.frame import Image
+from interreflect.methods.method import Method, method
+from interreflect.methods.knobs import stage
+from interreflect.methods.prepared import View
+from interreflect.profile import Profile
+from interreflect.stages import glossy, light_voxels, march, place, prefilter, shade, shadow, sky, trace_gbuffer, voxelize
+
+
+@method
+class VoxelConeTracing(Method):
+    """One indirect bounce by cones through prefiltered voxels, after Crassin et al. 2011, Rehfeld et al. 2014 (section 3.1) and Freed 2018.
+
+    Everything is done anew in every frame; only the ray hierarchy is kept. `glossy=None` leaves the glossy lobe's indirect light out.
+    """
+
+    grid: _core.Grid = _core.Grid(resolution=128)
+    voxelize: Any = stage(_core.SurfaceSampling())
+    light_voxels: Any = stage(_core.TracedLighting())
+    prefilter: Any = stage(_core.SurfaceCoverage())
+    march: Any = stage(_core.DiffuseCones())
+    glossy: Any = stage(_core.GlossyCone(), optional=True)
+    share: Any = stage(_core.Interleaved(width=2, height=2))
+    shadow: Any = stage(_core.TracedShadows())
+    sky: Any = stage(_core.ConeSky())
+
+    bounces: ClassVar[int | None] = 1
+
+    def compose(self, view: View, profile: Profile) -> tuple[Image, Image]:
+        scene, seed = view.scene, view.seed
+        with profile.stage("gbuffer") as note:
+            gbuffer = note(trace_gbuffer(scene, view.camera, view.size))
+        with profile.stage("voxelize") as note:
+            voxels = note(voxelize(self.voxelize, scene, place(self.grid, scene, view.camera)))
+        with profile.stage("light_voxels") as note:
+            lit = note(light_voxels(self.light_voxels, scene, voxels, seed))
+        with profile.stage("prefilter") as note:
+            pyramid = note(prefilter(self.prefilter, lit))
+        with profile.stage("march") as note:
+            gathered = note(march(self.march, pyramid, gbuffer, scene, share=self.share, seed=seed))
+        reflected = None
+        if self.glossy is not None:
+            with profile.stage("glossy") as note:
+                reflected = note(glossy(self.glossy, pyramid, gbuffer, scene, share=self.share, seed=seed))
+        with profile.stage("shadow") as note:
+            lights = note(shadow(self.shadow, scene, gbuffer, seed))
+        with profile.stage("sky") as note:
+            environment = note(sky(self.sky, scene, gbuffer, seed, gathered=gathered, glossy=reflected))
+        with profile.stage("shade"):
+            indirect = shade(gbuffer, gathered, reflected)
+            direct = gbuffer.emission + lights.radiance + environment.radiance
+        return direct, indirect
