@@ -354,9 +354,569 @@ class PathTraced:
         """
         Paths that every pixel got.
         """
+class GatheredLight:
+    """
+    What arrives at the pixels over the hemisphere about the shading normal; zero where nothing was hit.
+    """
+
+    @property
+    def bytes(self) -> int:
+        ...
+
+    @property
+    def counts(self) -> Counts:
+        ...
+
+    @property
+    def irradiance(self) -> numpy.typing.NDArray[numpy.float32]:
+        """
+        (height, width, 3): of light that surfaces reflect, W/m^2.
+        """
+
+    @property
+    def occlusion(self) -> numpy.typing.NDArray[numpy.float32]:
+        """
+        (height, width): cosine-weighted share of the hemisphere that is closed.
+        """
+
+    @property
+    def sky(self) -> numpy.typing.NDArray[numpy.float32]:
+        """
+        (height, width, 3): of the environment through the openings, W/m^2.
+        """
+class GlossyLight:
+    """
+    What the pixels' glossy lobe reflects towards the camera.
+    """
+
+    @property
+    def bytes(self) -> int:
+        ...
+
+    @property
+    def counts(self) -> Counts:
+        ...
+
+    @property
+    def radiance(self) -> numpy.typing.NDArray[numpy.float32]:
+        """
+        (height, width, 3): of light that surfaces reflected, W/(m^2 sr).
+        """
+
+    @property
+    def sky(self) -> numpy.typing.NDArray[numpy.float32]:
+        """
+        (height, width, 3): of the environment, W/(m^2 sr).
+        """
+class Interleaved:
+    """Each pixel of a block does its part of the work; the parts are merged over neighbours on the same surface."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self, *, width: int=..., height: int=..., normal_angle: float=..., plane_distance: float=...) -> None:
+        ...
+
+    def replace(self, *, width: int=..., height: int=..., normal_angle: float=..., plane_distance: float=...) -> Interleaved:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+
+    @property
+    def width(self) -> int:
+        ...
+
+    @property
+    def height(self) -> int:
+        ...
+
+    @property
+    def normal_angle(self) -> float:
+        ...
+
+    @property
+    def plane_distance(self) -> float:
+        ...
+class EveryPixel:
+    """Every pixel does all of its work itself."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self) -> None:
+        ...
+
+    def replace(self) -> EveryPixel:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+class DiffuseCones:
+    """Cones over the hemisphere, marched front to back through ever coarser levels of the pyramid."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self, *, set: str=..., cones: int=..., half_angle: float=..., step: float=..., first_diameter: float=..., normal_offset: float=..., level_bias: float=..., density: float=..., cut_off: float=...) -> None:
+        ...
+
+    def replace(self, *, set: str=..., cones: int=..., half_angle: float=..., step: float=..., first_diameter: float=..., normal_offset: float=..., level_bias: float=..., density: float=..., cut_off: float=...) -> DiffuseCones:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+
+    @property
+    def set(self) -> str:
+        ...
+
+    @property
+    def cones(self) -> int:
+        ...
+
+    @property
+    def half_angle(self) -> float:
+        ...
+
+    @property
+    def step(self) -> float:
+        ...
+
+    @property
+    def first_diameter(self) -> float:
+        ...
+
+    @property
+    def normal_offset(self) -> float:
+        ...
+
+    @property
+    def level_bias(self) -> float:
+        ...
+
+    @property
+    def density(self) -> float:
+        ...
+
+    @property
+    def cut_off(self) -> float:
+        ...
+class TracedRays:
+    """Rays against the triangles from each pixel, radiance read from the finest voxel at the hit."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self, *, samples: int=..., tile: int=...) -> None:
+        ...
+
+    def replace(self, *, samples: int=..., tile: int=...) -> TracedRays:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+
+    @property
+    def samples(self) -> int:
+        ...
+
+    @property
+    def tile(self) -> int:
+        ...
+class GlossyCone:
+    """One cone about the lobe's mean direction, as wide as the lobe, weighted by the lobe's directional albedo."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self, *, step: float=..., first_diameter: float=..., normal_offset: float=..., level_bias: float=..., density: float=..., cut_off: float=...) -> None:
+        ...
+
+    def replace(self, *, step: float=..., first_diameter: float=..., normal_offset: float=..., level_bias: float=..., density: float=..., cut_off: float=...) -> GlossyCone:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+
+    @property
+    def step(self) -> float:
+        ...
+
+    @property
+    def first_diameter(self) -> float:
+        ...
+
+    @property
+    def normal_offset(self) -> float:
+        ...
+
+    @property
+    def level_bias(self) -> float:
+        ...
+
+    @property
+    def density(self) -> float:
+        ...
+
+    @property
+    def cut_off(self) -> float:
+        ...
 class Scene:
 
     def __init__(self, geometry: Geometry, intersector: Intersector, materials: collections.abc.Sequence[Material], textures: collections.abc.Sequence[Texture], masks: collections.abc.Sequence[Mask], lights: list[typing.Any], environment: Environment | None=None) -> None:
+        ...
+class Domain:
+    """
+    A box of cubic voxels in world space.
+    """
+    __hash__: typing.ClassVar[None] = None
+
+    def __eq__(self, arg0: typing.Any) -> bool:
+        ...
+
+    def __init__(self, *, lower: typing.Annotated[collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], 'FixedSize(3)'], voxel_size: typing.SupportsFloat | typing.SupportsIndex, cells: typing.Annotated[collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex], 'FixedSize(3)']) -> None:
+        ...
+
+    def __repr__(self) -> str:
+        ...
+
+    @property
+    def cells(self) -> typing.Annotated[list[int], 'FixedSize(3)']:
+        """
+        Voxels along x, y, z.
+        """
+
+    @property
+    def lower(self) -> typing.Annotated[list[float], 'FixedSize(3)']:
+        """
+        Lower corner, world space.
+        """
+
+    @property
+    def upper(self) -> typing.Annotated[list[float], 'FixedSize(3)']:
+        """
+        Upper corner, world space.
+        """
+
+    @property
+    def voxel_size(self) -> float:
+        """
+        Edge of a voxel, world space.
+        """
+class Grid:
+    """Cubic voxels over the scene's bounds, half a voxel of air around them."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self, *, resolution: int=...) -> None:
+        ...
+
+    def replace(self, *, resolution: int=...) -> Grid:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+
+    @property
+    def resolution(self) -> int:
+        ...
+class VoxelGrid:
+    """
+    The voxels that the surface passes through, ascending by cell.
+    """
+
+    def __len__(self) -> int:
+        ...
+
+    @property
+    def albedo(self) -> typing.Any:
+        """
+        (n, 3): mean diffuse reflectance.
+        """
+
+    @property
+    def bytes(self) -> int:
+        """
+        Memory the arrays hold.
+        """
+
+    @property
+    def cell(self) -> typing.Any:
+        """
+        (n,) uint32: x + cells[0] (y + cells[1] z).
+        """
+
+    @property
+    def coordinates(self) -> numpy.typing.NDArray[numpy.int32]:
+        """
+        (n, 3) int32: x, y, z of each voxel (a copy).
+        """
+
+    @property
+    def counts(self) -> Counts:
+        ...
+
+    @property
+    def domain(self) -> Domain:
+        ...
+
+    @property
+    def emission(self) -> typing.Any:
+        """
+        (n, 3): mean radiance that the front emits, W/(m^2 sr).
+        """
+
+    @property
+    def normal(self) -> typing.Any:
+        """
+        (n, 3): mean normal of the front sides, unit; 0 where they cancel.
+        """
+
+    @property
+    def opacity(self) -> typing.Any:
+        """
+        (n,): solid share of the surface, below 1 where a mask has holes.
+        """
+
+    @property
+    def position(self) -> typing.Any:
+        """
+        (n, 3): mean position of the surface, world space.
+        """
+class LitVoxels:
+    """
+    Radiance that each voxel reflects.
+    """
+
+    @property
+    def back(self) -> typing.Any:
+        """
+        (n, 3): leaving the back; (0, 3) where only the front was lit.
+        """
+
+    @property
+    def bytes(self) -> int:
+        """
+        Memory the arrays hold.
+        """
+
+    @property
+    def counts(self) -> Counts:
+        ...
+
+    @property
+    def radiance(self) -> typing.Any:
+        """
+        (n, 3): leaving the front, W/(m^2 sr).
+        """
+
+    @property
+    def voxels(self) -> VoxelGrid:
+        """
+        The voxels that are lit.
+        """
+class Pyramid:
+    """
+    Radiance and opacity of ever larger voxels, as half floats.
+    """
+
+    def level(self, index: typing.SupportsInt | typing.SupportsIndex, face: typing.SupportsInt | typing.SupportsIndex=0) -> numpy.typing.NDArray[numpy.float32]:
+        """
+        (z, y, x, 4) float32, a copy: radiance premultiplied by opacity in W/(m^2 sr), and opacity. 0 is the finest level.
+        """
+
+    @property
+    def bytes(self) -> int:
+        """
+        Memory the levels hold.
+        """
+
+    @property
+    def counts(self) -> Counts:
+        ...
+
+    @property
+    def domain(self) -> Domain:
+        ...
+
+    @property
+    def faces(self) -> int:
+        """
+        1, or 6 from the second level on: seen through -x +x -y +y -z +z.
+        """
+
+    @property
+    def levels(self) -> int:
+        """
+        How many levels; the last is one texel.
+        """
+
+    @property
+    def scale(self) -> float:
+        """
+        Radiance of a stored 1.
+        """
+class SurfaceSampling:
+    """Uniform samples over every triangle, averaged in the cell they fall into."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self, *, spacing: float=...) -> None:
+        ...
+
+    def replace(self, *, spacing: float=...) -> SurfaceSampling:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+
+    @property
+    def spacing(self) -> float:
+        ...
+class ExactOverlap:
+    """Every cell that a triangle overlaps, by separating axes; means over the triangle's part in the cell."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self, *, samples: int=...) -> None:
+        ...
+
+    def replace(self, *, samples: int=...) -> ExactOverlap:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+
+    @property
+    def samples(self) -> int:
+        ...
+class TracedLighting:
+    """A shadow ray against the triangles to every delta light, and stratified samples of emitters and environment."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self, *, samples: int=..., both_sides: bool=...) -> None:
+        ...
+
+    def replace(self, *, samples: int=..., both_sides: bool=...) -> TracedLighting:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+
+    @property
+    def samples(self) -> int:
+        ...
+
+    @property
+    def both_sides(self) -> bool:
+        ...
+class Anisotropic:
+    """Six faces, each composited front to back along its direction, then averaged."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self) -> None:
+        ...
+
+    def replace(self) -> Anisotropic:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+class SurfaceCoverage:
+    """Opacity is a quarter of the sum of the eight below it, clamped; radiance keeps their mean colour."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self) -> None:
+        ...
+
+    def replace(self) -> SurfaceCoverage:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+class VolumeCoverage:
+    """A texel is the mean of the eight below it."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self) -> None:
+        ...
+
+    def replace(self) -> VolumeCoverage:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
         ...
 def _rebuild(arg0: typing.Any, arg1: dict[str, typing.Any]) -> typing.Any:
     """
@@ -366,9 +926,33 @@ def cone_sky(gbuffer: GBuffer, gathered: typing.Any, glossy: typing.Any=None) ->
     """
     What the march's cones left open: albedo / pi * gathered.sky + glossy.sky.
     """
+def glossy(technique: TracedRays | GlossyCone, pyramid: ..., gbuffer: GBuffer, scene: ..., share: EveryPixel | Interleaved, seed: typing.SupportsInt | typing.SupportsIndex) -> GlossyLight:
+    """
+    Light that the glossy lobe reflects. A lobe follows its own pixel's view and material: its work is not shared.
+    """
+def light_voxels(technique: TracedLighting, scene: Scene, voxels: VoxelGrid, seed: typing.SupportsInt | typing.SupportsIndex=0) -> LitVoxels:
+    """
+    The radiance that each voxel reflects.
+    """
+def march(technique: TracedRays | DiffuseCones, pyramid: ..., gbuffer: GBuffer, scene: ..., share: EveryPixel | Interleaved, seed: typing.SupportsInt | typing.SupportsIndex) -> GatheredLight:
+    """
+    Light that arrives over the hemisphere at the pixels.
+    """
 def path_trace(scene: ..., camera: Camera, width: typing.SupportsInt | typing.SupportsIndex, height: typing.SupportsInt | typing.SupportsIndex, *, samples: typing.SupportsInt | typing.SupportsIndex=1, milliseconds: typing.SupportsFloat | typing.SupportsIndex | None=None, bounces: typing.SupportsInt | typing.SupportsIndex | None=1, pixel: str='centre', pattern: typing.SupportsInt | typing.SupportsIndex=8, seed: typing.SupportsInt | typing.SupportsIndex=0) -> PathTraced:
     """
     Path tracing with exactly `bounces` indirect bounces (None: all); `samples` paths a pixel, fewer where `milliseconds` end sooner.
+    """
+def place(grid: Grid, scene: Scene, camera: Camera=None) -> Domain:
+    """
+    The domain of a grid over the scene's bounds.
+    """
+def prefilter(technique: VolumeCoverage | SurfaceCoverage | Anisotropic, lit: LitVoxels) -> Pyramid:
+    """
+    Radiance and opacity of ever larger voxels.
+    """
+def shade(gbuffer: GBuffer, gathered: GatheredLight, glossy: GlossyLight=None) -> numpy.typing.NDArray[numpy.float32]:
+    """
+    (height, width, 3): indirect light that leaves the pixels' surfaces towards the camera.
     """
 @typing.overload
 def shadow(technique: TracedShadows, scene: ..., gbuffer: GBuffer, seed: typing.SupportsInt | typing.SupportsIndex=0) -> DirectLight:
@@ -381,4 +965,8 @@ def sky(technique: TracedSky, scene: ..., gbuffer: GBuffer, seed: typing.Support
 def trace_gbuffer(scene: ..., camera: Camera, width: typing.SupportsInt | typing.SupportsIndex, height: typing.SupportsInt | typing.SupportsIndex) -> GBuffer:
     """
     The G-buffer by primary rays through pixel centres; textures are filtered by the pixel's footprint.
+    """
+def voxelize(technique: ExactOverlap | SurfaceSampling, scene: Scene, domain: Domain) -> VoxelGrid:
+    """
+    The voxels of the scene's surface.
     """

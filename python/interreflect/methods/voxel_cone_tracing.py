@@ -6,8 +6,8 @@ from typing import Any, ClassVar
 
 from interreflect import _core
 from interreflect.frame import Image
-from interreflect.methods.method import Method, method
 from interreflect.methods.knobs import stage
+from interreflect.methods.method import Method, method
 from interreflect.methods.prepared import View
 from interreflect.profile import Profile
 from interreflect.stages import glossy, light_voxels, march, place, prefilter, shade, shadow, sky, trace_gbuffer, voxelize
