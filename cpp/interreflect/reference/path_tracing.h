@@ -1,8 +1,8 @@
 /// Path tracing: what every other method is measured against.
 ///
 /// Direct light is emission, the environment seen directly, and light reflected once; indirect light is everything reflected more
-/// often. At every vertex a shadow ray goes to each point, spot and directional light and one each to a sampled emitter and to
-/// the environment, weighed against the ray that the reflection chose [Veach 1997, 9.2].
+/// often. At every vertex a shadow ray goes to each point, spot and directional light and one each to a sampled emitter and to the
+/// environment, weighed against the ray that the reflection chose [Veach 1997, 9.2].
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -18,11 +18,11 @@ namespace interreflect {
 enum class PixelFilter { centre, box };
 
 struct PathTracingSettings {
-    int samples = 1;                          // most paths a pixel
-    std::optional<double> milliseconds;       // stop after the pass during which so much time has gone by; at least one
+    int samples = 1;                          // paths a pixel
+    std::optional<double> milliseconds;       // instead: passes of one path until so much time has gone by; at least one
     std::optional<int> bounces = 1;           // most indirect bounces; 0: direct light only; none: all, by roulette
     PixelFilter pixel = PixelFilter::centre;  // centre: the G-buffer's point with its filtered texture; box: the pixel's mean
-    int pattern = 8;                          // pixels of a tile at equal places of an n x n pattern share their random numbers
+    int pattern = 8;  // within a tile, pixels at equal places of an n x n pattern share their random numbers
     std::uint32_t seed = 0;
 };
 
