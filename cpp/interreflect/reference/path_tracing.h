@@ -1,8 +1,8 @@
 /// Path tracing: what every other method is measured against.
 ///
 /// Direct light is emission, the environment seen directly, and light reflected once; indirect light is everything reflected more
-/// often. At every vertex a shadow ray goes to each point, spot and directional light and one each to a sampled emitter and to the
-/// environment, weighed against the ray that the reflection chose [Veach 1997, 9.2].
+/// often. At every vertex a shadow ray goes to each point, spot and directional light and one each to a sampled emitter and to
+/// the environment, weighed against the ray that the reflection chose [Veach 1997, 9.2].
 #pragma once
 #include <cstdint>
 #include <optional>

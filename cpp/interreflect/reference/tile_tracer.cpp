@@ -48,6 +48,14 @@ TileTracer::TileTracer(const Integrand& integrand) : in_(integrand) {
     const auto n = static_cast<std::uint32_t>(in_.pattern);
     for (std::uint32_t i = 0; i < tracing_tile_pixels; ++i)
         pattern_of_pixel_[i] = morton(i % tracing_tile % n, i / tracing_tile % n);
+    for (std::uint32_t i = 0; i < tracing_tile_pixels; ++i) whole_by_block_.push_back(i);
+    whole_by_pattern_ = whole_by_block_;
+    const auto block = [](std::uint32_t i) { return morton(i % tracing_tile, i / tracing_tile); };
+    const auto place = [&](std::uint32_t i) {
+        return static_cast<std::uint64_t>(pattern_of_pixel_[i]) << 32 | morton(i % tracing_tile / n, i / tracing_tile / n);
+    };
+    std::sort(whole_by_block_.begin(), whole_by_block_.end(), [&](auto i, auto j) { return block(i) < block(j); });
+    std::sort(whole_by_pattern_.begin(), whole_by_pattern_.end(), [&](auto i, auto j) { return place(i) < place(j); });
     const std::uint32_t patterns = *std::max_element(pattern_of_pixel_.begin(), pattern_of_pixel_.end()) + 1;
     for (auto& table : of_pattern_) table.resize(patterns);
     first_.resize(tracing_tile_pixels), first_direction_.resize(tracing_tile_pixels), first_emission_.resize(tracing_tile_pixels);
@@ -55,18 +63,14 @@ TileTracer::TileTracer(const Integrand& integrand) : in_(integrand) {
     for (auto& surfaces : surfaces_) surfaces.resize(tracing_tile_pixels);
 }
 
+/// The orders of a whole tile, without what lies beyond the picture's border.
 void TileTracer::make_orders(const Tile& tile) {
-    by_block_.clear();
-    for (int y = 0; y < tile.y1 - tile.y0; ++y)
-        for (int x = 0; x < tile.x1 - tile.x0; ++x) by_block_.push_back(static_cast<std::uint32_t>(y * tracing_tile + x));
-    by_pattern_ = by_block_;
-    const auto n = static_cast<std::uint32_t>(in_.pattern);
-    const auto block = [](std::uint32_t i) { return morton(i % tracing_tile, i / tracing_tile); };
-    const auto place = [&](std::uint32_t i) {
-        return static_cast<std::uint64_t>(pattern_of_pixel_[i]) << 32 | morton(i % tracing_tile / n, i / tracing_tile / n);
+    const auto inside = [&](std::uint32_t i) {
+        return tile.x0 + static_cast<int>(i % tracing_tile) < tile.x1 && tile.y0 + static_cast<int>(i / tracing_tile) < tile.y1;
     };
-    std::sort(by_block_.begin(), by_block_.end(), [&](auto a, auto b) { return block(a) < block(b); });
-    std::sort(by_pattern_.begin(), by_pattern_.end(), [&](auto a, auto b) { return place(a) < place(b); });
+    by_block_.clear(), by_pattern_.clear();
+    std::copy_if(whole_by_block_.begin(), whole_by_block_.end(), std::back_inserter(by_block_), inside);
+    std::copy_if(whole_by_pattern_.begin(), whole_by_pattern_.end(), std::back_inserter(by_pattern_), inside);
 }
 
 void TileTracer::load_pair(Pair which, int vertex, int sample) {
@@ -115,9 +119,8 @@ void TileTracer::trace_primary(const Tile& tile, const SampleSequence& sequence,
             continue;
         }
         const vec2 place = place_of(pixel);
-        const Footprint footprint = in_.pixel == PixelFilter::centre
-                                        ? pixel_footprint(in_.scene, hits_[i], in_.camera, place.x, place.y)
-                                        : Footprint{};
+        const Footprint footprint =
+            in_.pixel == PixelFilter::centre ? pixel_footprint(in_.scene, hits_[i], in_.camera, place.x, place.y) : Footprint{};
         first_[pixel] = surface_at(in_.scene, hits_[i], direction, footprint);
         first_emission_[pixel] = first_[pixel].emission;
     }
@@ -129,7 +132,8 @@ void TileTracer::trace_sample(int sample) {
         if (first_hit_[pixel] != 0 && reflects(first_[pixel]))
             paths_.push_back({first_direction_[pixel], vec3(1), pixel, pattern_of_pixel_[pixel], &first_[pixel]});
     for (int vertex = 0; !paths_.empty(); ++vertex) {
-        for (const Pair which : {emitter_point, environment_point, reflection, choices, roulette}) load_pair(which, vertex, sample);
+        for (const Pair which : {emitter_point, environment_point, reflection, choices, roulette})
+            load_pair(which, vertex, sample);
         add_delta_lights(vertex);
         if (in_.lights.has_emitters()) add_emitters(vertex);
         if (in_.lights.has_environment()) add_environment(vertex);
@@ -224,10 +228,8 @@ vec3 TileTracer::emission_met(const Step& step, const Hit& hit, const SurfacePoi
     const SurfacePoint& left = *paths_[step.path].at;
     const vec3 direction = rays_[&step - steps_.data()].direction;
     if (seen == nullptr)
-        return step.throughput * in_.lights.environment(direction) *
-               power_heuristic(step.pdf, environment_pdf(left, direction));
-    return step.throughput * seen->emission *
-           power_heuristic(step.pdf, in_.lights.emitter_pdf(hit, left.position, direction));
+        return step.throughput * in_.lights.environment(direction) * power_heuristic(step.pdf, environment_pdf(left, direction));
+    return step.throughput * seen->emission * power_heuristic(step.pdf, in_.lights.emitter_pdf(hit, left.position, direction));
 }
 
 void TileTracer::take_steps(int vertex) {

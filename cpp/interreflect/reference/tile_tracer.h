@@ -93,9 +93,10 @@ class TileTracer {
     const SampleSequence* sequence_ = nullptr;
     std::array<Bits2, pairs_a_vertex> of_sample_;
     std::array<std::vector<Bits2>, pairs_a_vertex> of_pattern_;
-    std::vector<std::uint32_t> pattern_of_pixel_, by_pattern_, by_block_;  // the last two: pixels of the current tile
-    std::vector<SurfacePoint> first_;                                      // by pixel
-    std::vector<vec3> first_direction_, first_emission_;                   // by pixel
+    std::vector<std::uint32_t> pattern_of_pixel_, whole_by_pattern_, whole_by_block_;
+    std::vector<std::uint32_t> by_pattern_, by_block_;    // pixels of the current tile
+    std::vector<SurfacePoint> first_;                     // by pixel
+    std::vector<vec3> first_direction_, first_emission_;  // by pixel
     std::vector<std::uint8_t> first_hit_;
     std::vector<SurfacePoint> surfaces_[2];
     std::vector<Path> paths_, next_paths_;
