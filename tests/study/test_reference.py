@@ -63,6 +63,34 @@ def test_halves_are_independent_and_average_to_the_truth():
     np.testing.assert_allclose(truth.direct + truth.indirect, truth.image, rtol=1e-6)
 
 
+def test_an_interrupted_truth_goes_on_where_it_was_and_ends_the_same(fake_truth, monkeypatch):
+    wanted = {"scene": Scene(), "size": SIZE, "bounces": 1, "noise": 1e-12, "max_spp": 512}
+    whole = reference(**wanted)
+    for path in fake_truth.glob("*"):
+        path.unlink()
+    monkeypatch.setattr(reference_module, "SECONDS_AT_STAKE", -1.0)  # keep the halves after every round
+    rendered, stop = [], [True]
+
+    class Interrupted(FakePathTracing):
+        def prepare(self, scene, threads=None):
+            rendered.append(self.spp)
+            if stop[0] and sum(rendered) > 100:
+                raise KeyboardInterrupt
+            return super().prepare(scene, threads)
+
+    monkeypatch.setattr(reference_module, "path_tracer", lambda: Interrupted)
+    monkeypatch.setattr(reference_module, "source_digest", lambda *_: "the same")
+    with pytest.raises(KeyboardInterrupt):
+        reference(**wanted)
+    rendered.clear()
+    stop[0] = False
+    resumed = reference(**wanted)
+    assert sum(rendered) < 512 - 50  # 8 + 8 + 16 + ... samples of each half were there
+    np.testing.assert_array_equal(resumed.image, whole.image)
+    assert (resumed.noise, resumed.spp) == (whole.noise, whole.spp)
+    assert [path.name for path in fake_truth.iterdir()] == [f"{resumed.key}.npz"]
+
+
 def test_no_stream_of_random_numbers_is_used_twice():
     seeds = []
     for seed in range(20):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import hashlib
 import math
+import time
 import zipfile
 from collections.abc import Callable
 from pathlib import Path
@@ -15,11 +16,13 @@ import numpy.typing as npt
 
 import interreflect.cache as cache
 from interreflect import metrics
+from interreflect.scenes.camera import checked_size
 from interreflect.study.files import canonical, set_aside
 from interreflect.study.interface import Frame, Image, Scene
 from interreflect.study.sources import source_digest
 
 FORMAT = 1
+SECONDS_AT_STAKE = 5.0  # of sampling, before a truth's halves are kept
 FIRST_SPP = 8  # samples per pixel of each half's first round
 
 
@@ -64,14 +67,14 @@ def reference(
     """The path-traced truth of a view, through pixel centres; kept on disk by content.
 
     camera: a name; None: the scene's first. size: (width, height). bounces: indirect bounces, None: all. noise: bound of the
-    truth's own relMSE, as far as `max_spp` samples per pixel allow: see the result's `noise`. ValueError for settings out of
-    range and for a picture with numbers that are not finite.
+    truth's own relMSE, as far as `max_spp` samples per pixel allow: see the result's `noise`. What was sampled before an
+    interruption is not lost. ValueError for settings out of range and for a picture with numbers that are not finite.
     """
     wanted = Reference(noise, max_spp)
-    name = camera_name(scene, camera)
+    name, size = camera_name(scene, camera), checked_size(size)
     key = reference_key(scene, name, size, bounces, wanted, seed)
     path = cache.folder("references") / f"{key}.npz"
-    found = load_truth(path) if path.exists() else None
+    found = load_truth(path)
     if found is not None:
         cache.touch(path)
         return found
@@ -81,8 +84,11 @@ def reference(
         tracer = method(spp=spp, bounces=bounces, pixel="centre")
         return tracer.prepare(scene, threads=threads).render(name, size=size, seed=seed, threads=threads)  # type: ignore[no-any-return]
 
-    truth = converge(render, wanted, seed, key)
+    halves = path.with_suffix(".halves.npz")
+    with _Progress(wanted, halves) as progress:
+        truth = converge(render, wanted, seed, key, load_halves(halves), progress)
     save_truth(truth, path)
+    halves.unlink(missing_ok=True)
     return truth
 
 
@@ -119,30 +125,41 @@ def reference_key(scene: Scene, camera: str, size: tuple[int, int], bounces: int
     return hashlib.sha256(canonical(identity).encode()).hexdigest()[:32]
 
 
-def converge(render: Callable[[int, int], Frame], wanted: Reference, seed: int, key: str = "") -> Truth:
+def converge(
+    render: Callable[[int, int], Frame],
+    wanted: Reference,
+    seed: int,
+    key: str = "",
+    start: tuple[Half, Half] | None = None,
+    after_round: Callable[[tuple[Half, Half], Truth], None] | None = None,
+) -> Truth:
     """Double the samples of two halves until the noise bound or the largest number of samples is reached.
 
-    render(spp, seed) gives an unbiased frame, independent for every seed.
+    render(spp, seed) gives an unbiased frame, independent for every seed. start: halves of an earlier call with the same
+    arguments, after whole rounds; the result is the same to the bit.
     """
     largest = wanted.max_spp // 2
-    halves = [_Half(), _Half()]
+    halves = start or (Half(), Half())
     while True:
         spp = min(max(halves[0].spp, FIRST_SPP), largest - halves[0].spp)
-        for index, half in enumerate(halves):
-            half.add(render(spp, _stream(seed, index, half.rounds)), spp)
+        if spp > 0:
+            for index, half in enumerate(halves):
+                half.add(render(spp, _stream(seed, index, half.rounds)), spp)
         truth = _merge(halves[0], halves[1], key)
+        if after_round is not None:
+            after_round(halves, truth)
         if truth.noise <= wanted.noise or halves[0].spp >= largest:
             return truth
 
 
-class _Half:
+@dataclasses.dataclass(eq=False)
+class Half:
     """Running mean of direct and indirect light."""
 
-    def __init__(self) -> None:
-        self.direct: npt.NDArray[np.float64] = np.zeros(())
-        self.indirect: npt.NDArray[np.float64] = np.zeros(())
-        self.spp = 0
-        self.rounds = 0
+    direct: npt.NDArray[np.float64] = dataclasses.field(default_factory=lambda: np.zeros(()))
+    indirect: npt.NDArray[np.float64] = dataclasses.field(default_factory=lambda: np.zeros(()))
+    spp: int = 0
+    rounds: int = 0
 
     def add(self, frame: Frame, spp: int) -> None:
         for name in ("direct", "indirect"):
@@ -161,7 +178,7 @@ def _stream(seed: int, half: int, round: int) -> int:
     return int.from_bytes(hashlib.blake2b(f"reference {seed} {half} {round}".encode(), digest_size=4).digest()) >> 1
 
 
-def _merge(a: _Half, b: _Half, key: str) -> Truth:
+def _merge(a: Half, b: Half, key: str) -> Truth:
     direct, indirect = (a.direct + b.direct) / 2, (a.indirect + b.indirect) / 2
     image_a, image_b = a.direct + a.indirect, b.direct + b.indirect
     return Truth(
@@ -181,6 +198,46 @@ def _noise(a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]) -> float:
     return metrics.relmse(a, (a + b) / 2)
 
 
+class _Progress:
+    """Shows how far a truth is, and keeps its halves now and then, so that an interruption costs seconds and not the whole."""
+
+    def __init__(self, wanted: Reference, path: Path) -> None:
+        from tqdm import tqdm
+
+        self.path, self.saved = path, time.monotonic()
+        self.bar = tqdm(total=wanted.max_spp, desc="truth", unit="spp", leave=False, delay=1, disable=None)
+
+    def __call__(self, halves: tuple[Half, Half], truth: Truth) -> None:
+        self.bar.update(truth.spp - self.bar.n)
+        self.bar.set_postfix_str(f"noise {truth.noise:.1e}")
+        if time.monotonic() - self.saved > SECONDS_AT_STAKE:
+            save_halves(halves, self.path)
+            self.saved = time.monotonic()
+
+    def __enter__(self) -> _Progress:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.bar.close()
+
+
+def save_halves(halves: tuple[Half, Half], path: Path) -> None:
+    """Keep two halves after a whole round, in double precision."""
+    light = np.stack([[half.direct, half.indirect] for half in halves])
+    numbers = np.array([halves[0].spp, halves[0].rounds])
+    cache.write(path, lambda file: np.savez(file, allow_pickle=False, light=light, numbers=numbers))
+
+
+def load_halves(path: Path) -> tuple[Half, Half] | None:
+    """What `save_halves` kept; None where there is nothing, or it was damaged and is set aside."""
+    found = _load_arrays(path, ("light", "numbers"))
+    if found is None:
+        return None
+    spp, rounds = (int(number) for number in found["numbers"])
+    a, b = (Half(direct, indirect, spp, rounds) for direct, indirect in found["light"])
+    return a, b
+
+
 def save_truth(truth: Truth, path: Path) -> None:
     """Keep a truth in the cache; without a cache that can be written it is made anew each time, which a warning says."""
     arrays = {"image": truth.image, "direct": truth.direct, "indirect": truth.indirect, "halves": np.stack(truth.halves)}
@@ -189,13 +246,21 @@ def save_truth(truth: Truth, path: Path) -> None:
 
 
 def load_truth(path: Path) -> Truth | None:
-    """A saved truth; None where the file was damaged, which is then set aside."""
-    try:
-        with np.load(path, allow_pickle=False) as kept:
-            a = {name: kept[name] for name in ("image", "direct", "indirect", "halves", "numbers")}
-    except (ValueError, KeyError, OSError, EOFError, zipfile.BadZipFile):
-        set_aside(path)
+    """A saved truth; None where there is none, or it was damaged and is set aside."""
+    a = _load_arrays(path, ("image", "direct", "indirect", "halves", "numbers"))
+    if a is None:
         return None
     noise, indirect_noise, spp = (float(x) for x in a["numbers"])
     halves = a["halves"][0], a["halves"][1]
     return Truth(a["image"], a["direct"], a["indirect"], halves, noise, indirect_noise, int(spp), path.stem)
+
+
+def _load_arrays(path: Path, names: tuple[str, ...]) -> dict[str, Any] | None:
+    try:
+        with np.load(path, allow_pickle=False) as kept:
+            return {name: kept[name] for name in names}
+    except FileNotFoundError:
+        return None
+    except (ValueError, KeyError, OSError, EOFError, zipfile.BadZipFile):
+        set_aside(path)
+        return None
