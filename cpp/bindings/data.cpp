@@ -65,7 +65,8 @@ Material make_material(Float3 albedo, int albedo_map, Float3 specular, float rou
 
 Camera make_camera(Float3 position, Float3 target, Float3 up, float fov_x) {
     const Camera camera{vector3(position), vector3(target), vector3(up), fov_x};
-    if (!(fov_x > 0.0f && fov_x < 180.0f)) throw py::value_error("fov_x must lie in (0, 180) degrees, got " + std::to_string(fov_x));
+    if (!(fov_x > 0.0f && fov_x < 180.0f))
+        throw py::value_error("fov_x must lie in (0, 180) degrees, got " + std::to_string(fov_x));
     const CameraRays rays(camera, 1, 1);
     if (!std::isfinite(glm::dot(rays.corner, rays.right_step)) || !std::isfinite(glm::length(camera.position)))
         throw py::value_error("position, target and up must be finite, position not target, and up not parallel to the view");
@@ -217,8 +218,7 @@ void bind_data(py::module_& m) {
              py::arg("lobe") = "ggx", py::arg("emission") = Float3{0, 0, 0}, py::arg("emission_map") = -1, py::arg("mask") = -1,
              py::arg("two_sided") = true);
     py::class_<Camera>(m, "Camera")
-        .def(py::init(&make_camera),
-             py::arg("position"), py::arg("target"), py::arg("up"), py::arg("fov_x"));
+        .def(py::init(&make_camera), py::arg("position"), py::arg("target"), py::arg("up"), py::arg("fov_x"));
     py::class_<Geometry, std::shared_ptr<Geometry>>(m, "Geometry")
         .def(py::init([](const py::list& meshes, const py::list& instances) {
                  return std::const_pointer_cast<Geometry>(read_geometry(meshes, instances));

@@ -11,7 +11,7 @@ from interreflect import _core
 P = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]], np.float32)
 T = np.array([[0, 1, 2]], np.uint32)
 UV = np.zeros((3, 2), np.float32)
-EYE = np.eye(4)
+EYE, UPRIGHT = np.eye(4), np.eye(3)
 
 
 def geometry(positions: Any = P, triangles: Any = T, normals: Any = None, texcoords: Any = None, number: int = 0, **placed: Any) -> Any:
@@ -25,7 +25,7 @@ def scene(material: dict[str, Any] | None = None, lights: Any = (), environment:
     return _core.Scene(shape, _core.Intersector(shape, materials, list(masks)), materials, [], [], list(lights), environment)
 
 
-def environment(image: Any, rotation: Any = EYE[:3, :3].copy()) -> Any:
+def environment(image: Any, rotation: Any = UPRIGHT) -> Any:
     return scene(environment=_core.Environment((1, 1, 1), image, rotation))
 
 

@@ -3,12 +3,15 @@
 import importlib.util
 import itertools
 import re
+import subprocess
+import sys
 from pathlib import Path
 from types import ModuleType
 
 import numpy as np
 import pytest
 
+import interreflect.cache as cache
 from interreflect.scenes.load import load_scene, read_scene
 from interreflect.scenes.values import EnvironmentLight, Scene
 
@@ -54,6 +57,40 @@ def test_sponza_has_its_textures_masks_and_warning(shared_scenes: Path) -> None:
     assert all(texture.pixels.dtype == np.uint8 for texture in textures)
     assert len(scene.warnings) == 1 and "425 triangles without area dropped" in scene.warnings[0]
     assert load_scene(shared_scenes / "sponza_crytek" / "scene.toml") == scene  # from the cache
+
+
+FIRST_RAY = """
+import resource, sys, time
+begin = time.perf_counter()
+import interreflect as ir
+scene = ir.load_scene(sys.argv[1])
+assert ir.trace_gbuffer(scene, size=(1, 1)).counts is not None
+print(time.perf_counter() - begin, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024)
+"""
+
+
+def first_ray(shared_scenes: Path) -> tuple[float, float]:
+    """Seconds from the start of the import to Sponza's first ray, and the process's peak memory in MiB."""
+    manifest = shared_scenes / "sponza_crytek" / "scene.toml"
+    child = subprocess.run([sys.executable, "-c", FIRST_RAY, str(manifest)], capture_output=True, text=True, check=True)
+    seconds, peak = map(float, child.stdout.split())
+    return seconds, peak
+
+
+def test_sponza_to_the_first_ray_stays_below_600_mib_cold_and_cached(shared_scenes: Path) -> None:
+    assert first_ray(shared_scenes)[1] < 600
+    assert first_ray(shared_scenes)[1] < 600
+
+
+@pytest.mark.long
+def test_sponza_reaches_its_first_ray_in_3_seconds_cold_and_1_second_cached(shared_scenes: Path) -> None:
+    """Minima of three, for other processes may run."""
+    cold = []
+    for _ in range(3):
+        cache.clear()
+        cold.append(first_ray(shared_scenes)[0])
+    assert min(cold) < 3
+    assert min(first_ray(shared_scenes)[0] for _ in range(3)) < 1
 
 
 @pytest.fixture(scope="module")

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from interreflect.errors import SceneError
 from interreflect.scenes.checks import nearest_name
-from interreflect.scenes.files import Folder, shown
+from interreflect.scenes.files import EXTENSIONS, Folder, shown
 from interreflect.scenes.gltf import read_gltf
 from interreflect.scenes.images import read_mask, read_texture
 from interreflect.scenes.manifest import Geometry, Manifest, checked
@@ -22,7 +22,6 @@ from interreflect.scenes.parts import GeometryFile, Part, cleaned
 from interreflect.scenes.ply import read_ply
 from interreflect.scenes.scene import Scene
 
-EXTENSIONS = (".obj", ".ply", ".gltf", ".glb")
 _MAPS = ("albedo_map", "emission_map", "mask")
 
 
@@ -95,8 +94,9 @@ class _Builder:
         """The part as a mesh, made once and then shared."""
         if key not in self._shapes:
             where = f"{shown(key[0])}: "
-            arrays = {"normals": part.normals, "texcoords": part.texcoords}
-            self._shapes[key] = checked(where, lambda: Mesh(part.positions, part.triangles, **arrays), "")
+            self._shapes[key] = checked(
+                where, lambda: Mesh(part.positions, part.triangles, normals=part.normals, texcoords=part.texcoords), ""
+            )
         return self._shapes[key]
 
     def _material(self, geometry: Geometry, file: GeometryFile, name: str | None, has_texcoords: bool) -> Material | None:

@@ -10,6 +10,7 @@ from pathlib import Path
 from interreflect.errors import SceneError
 from interreflect.scenes.checks import shorten
 
+EXTENSIONS = (".obj", ".ply", ".gltf", ".glb")
 MAX_MANIFEST_BYTES = 2**23
 MAX_GEOMETRY_BYTES = 2**31
 

@@ -6,10 +6,7 @@ import os
 from pathlib import Path
 
 from interreflect.errors import SceneError
-from interreflect.scenes.assemble import EXTENSIONS, assembled
-from interreflect.scenes.files import Folder, shown
-from interreflect.scenes.manifest import Geometry, Manifest, read_manifest
-from interreflect.scenes.mesh import IDENTITY
+from interreflect.scenes.files import EXTENSIONS, Folder, shown
 from interreflect.scenes.scene import Scene
 from interreflect.scenes.scene_cache import cached, keep
 
@@ -36,6 +33,10 @@ def load_scene(path: str | os.PathLike[str]) -> Scene:
 
 def read_scene(path: str, folder: Folder | None = None) -> Scene:
     """The scene as its files say now; `folder` learns which files those are."""
+    from interreflect.scenes.assemble import assembled  # not needed for a scene that was kept
+    from interreflect.scenes.manifest import Geometry, Manifest, read_manifest
+    from interreflect.scenes.mesh import IDENTITY
+
     folder = folder or Folder.of(path)
     if path.lower().endswith(".toml"):
         return assembled(read_manifest(path, folder), folder)

@@ -3,7 +3,7 @@
     scenes/<digest of the path>.files     the names that the scene's files refer to
     scenes/<digest of all content>.scene  the scene
 
-The second digest covers each of those files' bytes (or its absence), the loader's sources and the image library's version.
+The second digest covers each of those files' bytes (or its absence) and the loader's sources.
 """
 
 from __future__ import annotations
@@ -11,7 +11,6 @@ from __future__ import annotations
 import hashlib
 import os
 from functools import cache as once
-from importlib.metadata import version
 from pathlib import Path
 
 import interreflect.cache as cache
@@ -72,7 +71,7 @@ def _content_key(path: str, names: list[str]) -> str:
     for name in names:
         found = folder.locate(name, name)
         parts.append((name, None if found is None else _file_digest(found)))
-    return digest("scene", FORMAT, _sources(), version("OpenImageIO"), tuple(parts))
+    return digest("scene", FORMAT, _sources(), tuple(parts))
 
 
 def _file_digest(path: str) -> str:
