@@ -103,9 +103,7 @@ def _banners() -> list[Piece]:
     """Before the slab of the gallery, above the columns."""
     colours = ("blue cloth", "gold cloth", "red cloth", "green cloth")
     places = [-HALF_X + BAY * k for k in range(1, 5)]
-    return [
-        (c, side, 0.95, 1.75, (x - 0.475, SLAB + 0.1, -0.62)) for side in (0, 2) for c, x in zip(colours, places, strict=True)
-    ]
+    return [(c, side, 0.95, 1.75, (x - 0.475, SLAB + 0.1, -0.62)) for side in (0, 2) for c, x in zip(colours, places, strict=True)]
 
 
 @cache

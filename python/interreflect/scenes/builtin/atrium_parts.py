@@ -56,11 +56,7 @@ def column(height: float, radius: float, sides: int, rings: int) -> Shape:
 def baluster(height: float, sides: int, rings: int) -> Shape:
     """A turned post that swells below its middle."""
     t = np.linspace(0, 1, 41)
-    radius = (
-        0.035
-        + 0.045 * np.exp(-(((t - 0.3) / 0.16) ** 2))
-        + 0.025 * (np.exp(-((t / 0.06) ** 2)) + np.exp(-(((1 - t) / 0.06) ** 2)))
-    )
+    radius = 0.035 + 0.045 * np.exp(-(((t - 0.3) / 0.16) ** 2)) + 0.025 * (np.exp(-((t / 0.06) ** 2)) + np.exp(-(((1 - t) / 0.06) ** 2)))
     return revolved(simplified(np.stack([radius, t * height], 1), rings), sides)
 
 
@@ -81,9 +77,7 @@ def fountain(sides: int, rings: int) -> Shape:
     bowl = np.stack([0.16 + 0.5 * np.sin(np.pi / 2 * t), 1.1 + 0.25 * (1 - np.cos(np.pi / 2 * t))], 1)
     upper = simplified(np.concatenate([stem, bowl]), rings)
     inside = [(0.6, 1.37), (0.5, 1.24), (0.0, 1.2)]
-    return join(
-        [revolved([*basin, (0, 0.25)], 2 * sides), revolved([(0, 0.24), (0.28, 0.24), *upper, (0.66, 1.38), *inside], sides)]
-    )
+    return join([revolved([*basin, (0, 0.25)], 2 * sides), revolved([(0, 0.24), (0.28, 0.24), *upper, (0.66, 1.38), *inside], sides)])
 
 
 def plant(leaves: int, pieces: int) -> Shape:

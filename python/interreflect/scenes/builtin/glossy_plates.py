@@ -12,8 +12,8 @@ from interreflect.scenes.values import Camera, Material, Mesh, Scene
 ROUGHNESS = (0.1, 0.2, 0.32, 0.5)  # front to back
 RADII = (0.04, 0.12, 0.3, 0.75)  # left to right
 TINTS = ((1.0, 0.75, 0.5), (0.65, 1.0, 0.6), (0.6, 0.75, 1.0), (1.0, 0.65, 0.9))
-EYE = np.array([0.0, 2.2, 9.0])
-LAMPS = [np.array([x, 3.9, -3.2]) for x in (-3.6, -1.3, 1.2, 3.9)]
+EYE = np.array([0.0, 4.2, 10.5])
+LAMPS = [np.array([x, 4.6, -3.0]) for x in (-3.3, -1.4, 0.7, 3.2)]
 
 
 def glossy_plates(lobe: str = "ggx", specular: float = 0.6) -> Scene:
@@ -25,7 +25,7 @@ def glossy_plates(lobe: str = "ggx", specular: float = 0.6) -> Scene:
     choice("glossy_plates.lobe", lobe, ("ggx", "phong", "blinn-phong"))
     s = number("glossy_plates.specular", specular, 0, 0.9)
     meshes = [_stage(), *(_plate(k, _metal(k, lobe, s)) for k in range(len(ROUGHNESS))), *map(_lamp, range(len(RADII)))]
-    camera = Camera(position=triple(EYE), target=(0, 1.35, 0), fov_x=52)
+    camera = Camera(position=triple(EYE), target=(0, 1.85, 0), fov_x=58)
     return Scene(name=f"glossy_plates(lobe={lobe!r}, specular={s:g})", meshes=meshes, cameras={"front": camera})
 
 
@@ -42,10 +42,10 @@ def _metal(k: int, lobe: str, specular: float) -> Material:
 
 def _plate(k: int, material: Material) -> Mesh:
     """A slab that is tilted about x so that the camera sees the row of lamps in its middle."""
-    centre = np.array([0, 0.35 + 0.5 * k, 3.6 - 1.6 * k])
+    centre = np.array([0, 0.4 + 0.62 * k, 2.9 - 1.5 * k])
     lamp = np.array([0, LAMPS[0][1], LAMPS[0][2]])
     normal = _unit(_unit(EYE - centre) + _unit(lamp - centre))
-    slab = box((-4.2, -0.1, -0.45), (4.2, 0, 0.45))
+    slab = box((-4.2, -0.1, -0.6), (4.2, 0, 0.6))
     axes = np.stack([(1.0, 0.0, 0.0), normal, np.cross((1.0, 0.0, 0.0), normal)])
     return mesh(Shape(slab.positions @ axes + centre, slab.triangles), material)
 

@@ -32,9 +32,7 @@ def noise(size: int, cells: int, seed: int, octaves: int = 4) -> Floats:
     return np.asarray(total / weight)
 
 
-def masonry(
-    size: int, courses: int, blocks: int, joint: float, colour: ArrayLike, mortar: ArrayLike, vary: float, seed: int
-) -> Floats:
+def masonry(size: int, courses: int, blocks: int, joint: float, colour: ArrayLike, mortar: ArrayLike, vary: float, seed: int) -> Floats:
     """Linear colours of blocks in running bond. `joint`: its width over the texture's; `vary`: how much blocks differ, 0 to 1."""
     y, x = np.meshgrid(*[(np.arange(size) + 0.5) / size] * 2, indexing="ij")
     row = np.floor(y * courses).astype(int)
@@ -44,7 +42,7 @@ def masonry(
     worn = joint * (0.7 + 0.6 * noise(size, 16, seed + 1))
     solid = np.clip((edge - 0.5 * worn) * size / 1.5 + 0.5, 0, 1)[..., None]
     rng = np.random.default_rng(seed)
-    tone = 1 + vary * rng.uniform(-1, 1, (courses, blocks, 1)) + 0.35 * vary * rng.uniform(-1, 1, (courses, blocks, 3))
+    tone = 1 + vary * rng.uniform(-1, 1, (courses, blocks, 1)) + 0.15 * vary * rng.uniform(-1, 1, (courses, blocks, 3))
     grain = 0.86 + 0.28 * noise(size, 8, seed + 2, octaves=6)[..., None]
     return np.asarray(grain * (solid * np.asarray(colour) * tone[row, column] + (1 - solid) * np.asarray(mortar)))
 

@@ -27,7 +27,7 @@ def textured_light_box(radiance: float = 12, grating: int = 0) -> Scene:
     meshes = [*_room(), _ceiling(strength), *_bodies()]
     if bars:
         meshes.append(mesh(_grating(bars), Material(name="grating", albedo=(0.3, 0.3, 0.3))))
-    camera = Camera(position=(0.15, 0.9, 0.97), target=(-0.05, 0.72, -1), fov_x=88)
+    camera = Camera(position=(0.12, 0.95, 0.98), target=(-0.04, 0.92, -1), fov_x=96, size=(512, 512))
     name = f"textured_light_box(radiance={strength:g}, grating={bars})"
     return Scene(name=name, meshes=meshes, cameras={"front": camera})
 
