@@ -261,7 +261,20 @@ def test_non_finite_positions_are_refused(tmp_path: Path) -> None:
 
 
 def test_accessors_named_over_and_over_do_not_fill_the_memory(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("interreflect.scenes.gltf.MAX_TRIANGLES", 1000)
-    primitives = [{"attributes": {"POSITION": 0}, "indices": 1}] * 501
-    with pytest.raises(SceneError, match="more than the 1000 triangles"):
+    monkeypatch.setattr("interreflect.scenes.gltf_buffers.MAX_ROWS", 1000)
+    primitives = [{"attributes": {"POSITION": 0}, "indices": 1}] * 167  # of four vertices and two triangles
+    with pytest.raises(SceneError, match=r"meshes\[0\].primitives\[166\] makes more than the 1000 vertices and triangles"):
         load(tmp_path, meshes=[{"primitives": primitives}])
+
+
+def test_many_nodes_meshes_and_lights_load_in_bounded_time(tmp_path: Path) -> None:
+    many = 3000
+    nodes = [{"mesh": k, "extensions": {"KHR_lights_punctual": {"light": k}}} for k in range(many)]
+    scene = load(
+        tmp_path,
+        nodes=nodes,
+        scenes=[{"nodes": list(range(many))}],
+        meshes=gltf()["meshes"] * many,
+        extensions={"KHR_lights_punctual": {"lights": [{"type": "point"}] * many}},
+    )
+    assert scene.triangles == 2 * many and len(scene.lights) == many

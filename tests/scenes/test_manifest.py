@@ -289,9 +289,13 @@ def test_a_link_that_leads_out_is_refused(tmp_path: Path) -> None:
 
 def test_a_texture_with_too_many_pixels_is_refused_before_it_is_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     write_image(tmp_path / "t.png", np.zeros((8, 9, 3), np.uint8))
-    monkeypatch.setattr("interreflect.scenes.images.MAX_PIXELS", 71)
-    with pytest.raises(SceneError, match=r"t.png: 9 x 8 pixels are more than the 71 that are read"):
-        load(tmp_path, GEOMETRY + "[material.a]\nalbedo_map = 't.png'\n")
+    text = GEOMETRY + "[material.a]\nalbedo_map = 't.png'\nmask = 't.png'\n"
+    monkeypatch.setattr("interreflect.scenes.files.MAX_SCENE_PIXELS", 143)
+    with pytest.raises(SceneError, match=r"t.png: the scene's images have more than the 143 pixels that are read"):
+        load(tmp_path, text)
+    monkeypatch.setattr("interreflect.scenes.files.MAX_PIXELS", 71)
+    with pytest.raises(SceneError, match=r"t.png: 72 pixels are more than the 71 that are read"):
+        load(tmp_path, text)
 
 
 def test_pixels_that_are_not_finite_are_refused_and_negative_ones_raised_with_a_warning(tmp_path: Path) -> None:
@@ -311,8 +315,8 @@ def test_pixels_that_are_not_finite_are_refused_and_negative_ones_raised_with_a_
 def test_a_file_over_the_size_cap_is_refused_before_it_is_read(tmp_path: Path) -> None:
     write(tmp_path, a_obj="")
     with open(tmp_path / "a.obj", "r+b") as file:
-        file.truncate(2**31 + 1)  # sparse: takes no room
-    with pytest.raises(SceneError, match=r"a.obj: 2147483649 bytes are more than"):
+        file.truncate(2**30 + 1)  # sparse: takes no room
+    with pytest.raises(SceneError, match=r"a.obj: 1073741825 bytes are more than"):
         load_scene(tmp_path / "a.obj")
 
 

@@ -172,6 +172,13 @@ def test_a_malformed_material_is_refused_with_its_line(tmp_path: Path, mtl: str,
         load(tmp_path / "in" / "side", "mtllib m.mtl\nusemtl a\n" + TRIANGLE + "vt 0 0\nf 1/1 2/1 3/1\n", m_mtl=mtl)
 
 
+def test_thousands_of_materials_and_repeated_libraries_load_in_bounded_time(tmp_path: Path) -> None:
+    many = 5000
+    text = TRIANGLE + "mtllib m.mtl\n" * many + "".join(f"usemtl a{k}\nf 1 2 3\n" for k in range(many)) * 2
+    scene = load(tmp_path, text, m_mtl="".join(f"newmtl a{k}\nKd 0.5 0.5 0.5\n" for k in range(many)))
+    assert len(scene.meshes) == many and scene.triangles == 2 * many
+
+
 def test_trimesh_reads_the_same_triangles_from_a_clean_file(tmp_path: Path) -> None:
     trimesh = pytest.importorskip("trimesh")
     rng = np.random.default_rng(5)

@@ -140,7 +140,7 @@ class _Builder:
             return value
         kind = "mask" if key == "mask" else "texture"
         if (kind, value) not in self._images:
-            self._images[kind, value] = read_mask(value) if kind == "mask" else read_texture(value, self.folder.warnings)
+            self._images[kind, value] = read_mask(value, self.folder) if kind == "mask" else read_texture(value, self.folder)
         return self._images[kind, value]
 
     def dropped_maps(self) -> list[str]:

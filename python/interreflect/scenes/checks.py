@@ -20,7 +20,9 @@ def nearest_name(name: str, known: Iterable[str]) -> str:
     """'; did you mean X?' for the known name that resembles `name` most, or the list of the known ones."""
     names = list(known)
     near = difflib.get_close_matches(name[:100], names, n=1, cutoff=0.5)
-    return f"; did you mean {near[0]!r}?" if near else f"; known: {', '.join(names)}"
+    if near:
+        return f"; did you mean {near[0]!r}?"
+    return f"; known: {', '.join(names[:12])}" + (", ..." if len(names) > 12 else "")
 
 
 def shorten(value: object, limit: int = 80) -> str:

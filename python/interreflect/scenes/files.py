@@ -9,10 +9,12 @@ from pathlib import Path
 
 from interreflect.errors import SceneError
 from interreflect.scenes.checks import shorten
+from interreflect.scenes.texture import MAX_PIXELS
 
 EXTENSIONS = (".obj", ".ply", ".gltf", ".glb")
 MAX_MANIFEST_BYTES = 2**23
-MAX_GEOMETRY_BYTES = 2**31
+MAX_GEOMETRY_BYTES = 2**30
+MAX_SCENE_PIXELS = 2**30
 
 _SCHEME = re.compile(r"[A-Za-z][A-Za-z0-9+.-]*:")
 
@@ -42,6 +44,7 @@ class Folder:
     base: str
     used: dict[str, str | None] = field(default_factory=dict)
     warnings: list[str] = field(default_factory=list)
+    pixels: int = 0
 
     @staticmethod
     def of(path: str) -> Folder:
@@ -73,5 +76,10 @@ class Folder:
             raise SceneError(f"{where} {shorten(name)} does not exist")
         return path
 
-    def warn(self, message: str) -> None:
-        self.warnings.append(message)
+    def count_pixels(self, path: str, count: int) -> None:
+        """SceneError where one image, or all of the scene's together, have more pixels than are read."""
+        self.pixels += count
+        if count > MAX_PIXELS:
+            raise SceneError(f"{shown(path)}: {count} pixels are more than the {MAX_PIXELS} that are read")
+        if self.pixels > MAX_SCENE_PIXELS:
+            raise SceneError(f"{shown(path)}: the scene's images have more than the {MAX_SCENE_PIXELS} pixels that are read")

@@ -23,7 +23,6 @@ from interreflect.scenes.parts import GeometryFile, Placed, checked_part
 
 _EXTENSIONS = ("KHR_lights_punctual", "KHR_materials_emissive_strength", "KHR_mesh_quantization")
 _TRIANGLES, _STRIP, _FAN = 4, 5, 6
-MAX_TRIANGLES = 2**26  # of a file, instances not counted: accessors may be named any number of times
 
 
 def read_gltf(path: str, folder: Folder) -> GeometryFile:
@@ -41,14 +40,20 @@ def read_gltf(path: str, folder: Folder) -> GeometryFile:
     geometry = GeometryFile([], [])
     materials, names = read_materials(root, path, folder, buffers, geometry.warnings)
     geometry.materials = materials
-    nodes = _placed_nodes(root)
-    meshes = {k: None for table, _ in nodes if "mesh" in table for k in [table.whole("mesh", len(root.tables("meshes")))]}
-    parts_of = _read_meshes(root, buffers, list(meshes), names, geometry)
-    for table, transform in nodes:
-        if "mesh" in table:
-            geometry.placed += [Placed(part, transform) for part in parts_of[table.whole("mesh", len(root.tables("meshes")))]]
-        _add_camera(root, table, transform, geometry)
-        _add_light(root, table, transform, geometry)
+    meshes, cameras = root.tables("meshes"), root.tables("cameras")
+    lights = root.table("extensions").table("KHR_lights_punctual").tables("lights")
+    parts_of: dict[int, list[int]] = {}
+    for node, transform in _placed_nodes(root):
+        if "mesh" in node:
+            k = node.whole("mesh", len(meshes))
+            if k not in parts_of:
+                parts_of[k] = _read_mesh(meshes[k], k, buffers, names, geometry)
+            geometry.placed += [Placed(part, transform) for part in parts_of[k]]
+        if "camera" in node:
+            _add_camera(node, cameras, transform, geometry)
+        extension = node.table("extensions").table("KHR_lights_punctual")
+        if "light" in extension:
+            _add_light(lights[extension.whole("light", len(lights))], transform, geometry)
     return geometry
 
 
@@ -96,36 +101,27 @@ def _local_matrix(node: Table) -> NDArray[np.float64]:
     return matrix
 
 
-def _read_meshes(root: Table, buffers: Buffers, used: list[int], names: list[str], geometry: GeometryFile) -> dict[int, list[int]]:
-    """Fills geometry.parts; mesh number -> numbers of its parts. Each mesh is a group of its own."""
-    meshes = root.tables("meshes")
-    result: dict[int, list[int]] = {}
-    total = skipped = 0
-    for k in used:
-        result[k] = []
-        for primitive in meshes[k].tables("primitives"):
-            if primitive.whole("mode", 7, _TRIANGLES) < _TRIANGLES:
-                skipped += 1
-                continue
-            attributes = primitive.table("attributes")
-            positions = buffers.array(attributes, "POSITION", "VEC3")
-            normals = buffers.array(attributes, "NORMAL", "VEC3") if "NORMAL" in attributes else None
-            texcoords = buffers.array(attributes, "TEXCOORD_0", "VEC2") if "TEXCOORD_0" in attributes else None
-            for name, array in (("NORMAL", normals), ("TEXCOORD_0", texcoords)):
-                if array is not None and len(array) != len(positions):
-                    raise attributes.error(name, f"must have a row for each of the {len(positions)} positions, got {len(array)}")
-            if texcoords is not None:
-                texcoords = np.stack([texcoords[:, 0], 1 - texcoords[:, 1].astype(np.float64)], 1)  # glTF counts v from the top
-            triangles = _triangles(primitive, buffers, len(positions))
-            total += len(triangles)
-            if total > MAX_TRIANGLES:
-                raise primitive.error("indices", f"make more than the {MAX_TRIANGLES} triangles that are read")
-            material = names[primitive.whole("material", len(names))] if "material" in primitive else None
-            where = f"{root.file}: {primitive.path[:-1]}"
-            geometry.parts.append(checked_part(where, positions, triangles, normals, texcoords, material, group=k))
-            result[k].append(len(geometry.parts) - 1)
-    if skipped:
-        geometry.warnings.append(f"{root.file}: {skipped} primitives of points or lines left out")
+def _read_mesh(mesh: Table, group: int, buffers: Buffers, names: list[str], geometry: GeometryFile) -> list[int]:
+    """Adds the mesh's primitives to geometry.parts, as one group; their numbers there."""
+    result = []
+    for primitive in mesh.tables("primitives"):
+        if primitive.whole("mode", 7, _TRIANGLES) < _TRIANGLES:
+            geometry.warnings.append(f"{primitive.where} of points or lines left out")
+            continue
+        attributes = primitive.table("attributes")
+        positions = buffers.array(attributes, "POSITION", "VEC3")
+        normals = buffers.array(attributes, "NORMAL", "VEC3") if "NORMAL" in attributes else None
+        texcoords = buffers.array(attributes, "TEXCOORD_0", "VEC2") if "TEXCOORD_0" in attributes else None
+        for name, array in (("NORMAL", normals), ("TEXCOORD_0", texcoords)):
+            if array is not None and len(array) != len(positions):
+                raise attributes.error(name, f"must have a row for each of the {len(positions)} positions, got {len(array)}")
+        triangles = _triangles(primitive, buffers, len(positions))
+        buffers.count_rows(primitive, len(positions) + len(triangles))
+        if texcoords is not None:
+            texcoords = np.stack([texcoords[:, 0], 1 - texcoords[:, 1].astype(np.float64)], 1)  # glTF counts v from the top
+        material = names[primitive.whole("material", len(names))] if "material" in primitive else None
+        geometry.parts.append(checked_part(primitive.where, positions, triangles, normals, texcoords, material, group))
+        result.append(len(geometry.parts) - 1)
     return result
 
 
@@ -149,13 +145,10 @@ def _triangles(primitive: Table, buffers: Buffers, count: int) -> NDArray[np.int
     return np.stack([corners[step], corners[step + 1 + odd], corners[step + 2 - odd]], 1)
 
 
-def _add_camera(root: Table, node: Table, transform: NDArray[np.float64], geometry: GeometryFile) -> None:
-    if "camera" not in node:
-        return
-    cameras = root.tables("cameras")
+def _add_camera(node: Table, cameras: list[Table], transform: NDArray[np.float64], geometry: GeometryFile) -> None:
     k = node.whole("camera", len(cameras))
     if cameras[k].text("type") != "perspective":
-        geometry.warnings.append(f"{root.file}: cameras[{k}] is not perspective and left out")
+        geometry.warnings.append(f"{cameras[k].where} is not perspective and left out")
         return
     lens = cameras[k].table("perspective")
     aspect = lens.number("aspectRatio", 16 / 9, 1e-3, 1e3)
@@ -172,15 +165,10 @@ def _add_camera(root: Table, node: Table, transform: NDArray[np.float64], geomet
             size=(1280, max(1, min(16384, round(1280 / aspect)))),
         )
     except ValueError as error:
-        raise SceneError(f"{root.file}: cameras[{k}].{error}") from None
+        raise SceneError(f"{cameras[k].where}.{error}") from None
 
 
-def _add_light(root: Table, node: Table, transform: NDArray[np.float64], geometry: GeometryFile) -> None:
-    extension = node.table("extensions").table("KHR_lights_punctual")
-    if "light" not in extension:
-        return
-    lights = root.table("extensions").table("KHR_lights_punctual").tables("lights")
-    light = lights[extension.whole("light", len(lights))]
+def _add_light(light: Table, transform: NDArray[np.float64], geometry: GeometryFile) -> None:
     strength = light.number("intensity", 1.0, 0)
     colour = [c * strength for c in light.numbers("color", 3, [1, 1, 1], 0)]
     kind, position, direction = light.text("type"), transform[:3, 3].tolist(), (-_axis(transform, 2)).tolist()
@@ -204,7 +192,7 @@ def _add_light(root: Table, node: Table, transform: NDArray[np.float64], geometr
     except SceneError:
         raise
     except ValueError as error:
-        raise SceneError(f"{root.file}: {light.path}{error}") from None
+        raise SceneError(f"{light.where}.{error}") from None
     geometry.lights.append(made)
 
 

@@ -17,6 +17,7 @@ from interreflect.scenes.gltf_json import Table
 
 _COMPONENTS = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
 _WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4}
+MAX_ROWS = 2**26
 _JSON_CHUNK, _BINARY_CHUNK = 0x4E4F534A, 0x004E4942
 
 
@@ -48,7 +49,13 @@ class Buffers:
         self._buffers, self._views, self._accessors = (root.tables(key) for key in ("buffers", "bufferViews", "accessors"))
         self._loaded: dict[int, bytes] = {}
         self._read: dict[int, NDArray[Any]] = {}
-        self.accessor_count = len(self._accessors)
+        self._rows = 0
+
+    def count_rows(self, table: Table, rows: int) -> None:
+        """SceneError where the file's primitives together have too many vertices and triangles, as accessors may be named again."""
+        self._rows += rows
+        if self._rows > MAX_ROWS:
+            raise table.error("", f"makes more than the {MAX_ROWS} vertices and triangles that are read")
 
     def _buffer(self, k: int) -> bytes:
         if k not in self._loaded:

@@ -49,9 +49,12 @@ class Table:
     path: str
     value: dict[str, Any]
 
+    @property
+    def where(self) -> str:
+        return f"{self.file}: {self.path[:-1]}"
+
     def error(self, key: str, message: str) -> SceneError:
-        where = self.path + key if key else self.path[:-1]
-        return SceneError(f"{self.file}: {where} {message}")
+        return SceneError(f"{self.file}: {self.path}{key} {message}" if key else f"{self.where} {message}")
 
     def __contains__(self, key: str) -> bool:
         return key in self.value

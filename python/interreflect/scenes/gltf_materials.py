@@ -12,7 +12,7 @@ import numpy as np
 from interreflect.scenes.files import Folder
 from interreflect.scenes.gltf_buffers import Buffers, embedded
 from interreflect.scenes.gltf_json import Table
-from interreflect.scenes.images import has_alpha, read_mask, read_texture
+from interreflect.scenes.images import read_alpha_mask, read_texture
 from interreflect.scenes.texture import Mask, Texture
 
 
@@ -72,7 +72,7 @@ class Images:
         if k is None:
             return
         if k not in self._read:
-            self._read[k] = self._with_file(k, lambda file: read_texture(file, self._warnings))
+            self._read[k] = self._with_file(k, lambda file: read_texture(file, self._folder))
         texture = self._read[k]
         if texture is not None:
             keys[key] = texture
@@ -83,7 +83,7 @@ class Images:
         if k is None:
             return None
         if (k, threshold) not in self._masks:
-            self._masks[k, threshold] = self._with_file(k, lambda file: read_mask(file, threshold) if has_alpha(file) else None)
+            self._masks[k, threshold] = self._with_file(k, lambda file: read_alpha_mask(file, self._folder, threshold))
         return self._masks[k, threshold]
 
     def _image(self, table: Table, name: str) -> int | None:

@@ -8,34 +8,39 @@ import numpy as np
 from numpy.typing import NDArray
 
 from interreflect.errors import SceneError
-from interreflect.scenes.files import shown
-from interreflect.scenes.texture import MAX_PIXELS, Mask, Texture
+from interreflect.scenes.files import Folder, shown
+from interreflect.scenes.texture import Mask, Texture
 
 MASK_THRESHOLD = 0.5
 
 
-def read_texture(path: str, warnings: list[str]) -> Texture:
+def read_texture(path: str, folder: Folder) -> Texture:
     """Colours: 8 bits stay sRGB, 16 bits are decoded from it, float stays linear."""
-    pixels, _ = _read(path)
-    return Texture(_colours(path, pixels, warnings))
+    pixels, _ = _read(path, folder)
+    return Texture(_colours(path, pixels, folder.warnings))
 
 
-def read_radiance(path: str, warnings: list[str]) -> NDArray[np.float32]:
+def read_radiance(path: str, folder: Folder) -> NDArray[np.float32]:
     """(height, width, 3) float32, linear."""
-    pixels, _ = _read(path)
-    colours = _colours(path, pixels, warnings)
+    pixels, _ = _read(path, folder)
+    colours = _colours(path, pixels, folder.warnings)
     return decoded(colours.astype(np.float32) / 255) if colours.dtype == np.uint8 else colours
 
 
-def read_mask(path: str, threshold: float = MASK_THRESHOLD) -> Mask:
+def read_mask(path: str, folder: Folder, threshold: float = MASK_THRESHOLD) -> Mask:
     """Solid where the alpha channel, or the first where there is none, reaches `threshold`; not decoded."""
-    pixels, alpha = _read(path)
-    channel = pixels[..., alpha if alpha >= 0 else 0]
+    pixels, alpha = _read(path, folder)
+    return _mask(pixels[..., max(alpha, 0)], threshold)
+
+
+def _mask(channel: NDArray[Any], threshold: float) -> Mask:
     return Mask(channel >= threshold * (np.iinfo(channel.dtype).max if channel.dtype.kind == "u" else 1))
 
 
-def has_alpha(path: str) -> bool:
-    return _read(path)[1] >= 0
+def read_alpha_mask(path: str, folder: Folder, threshold: float) -> Mask | None:
+    """As `read_mask`; None where there is no alpha channel."""
+    pixels, alpha = _read(path, folder)
+    return None if alpha < 0 else _mask(pixels[..., alpha], threshold)
 
 
 def decoded(srgb: NDArray[np.floating[Any]]) -> NDArray[np.float32]:
@@ -59,7 +64,7 @@ def _colours(path: str, pixels: NDArray[Any], warnings: list[str]) -> NDArray[An
     return np.ascontiguousarray(colours)
 
 
-def _read(path: str) -> tuple[NDArray[Any], int]:
+def _read(path: str, folder: Folder) -> tuple[NDArray[Any], int]:
     """(height, width, 1 to 4) uint8, uint16 or float32 as stored, and the number of the alpha channel or -1."""
     import OpenImageIO as oiio
 
@@ -72,8 +77,7 @@ def _read(path: str) -> tuple[NDArray[Any], int]:
         spec = image.spec()
         if spec.deep or spec.depth > 1 or min(spec.width, spec.height, spec.nchannels) < 1:
             raise SceneError(f"{shown(path)}: is no flat image")
-        if spec.width * spec.height > MAX_PIXELS:
-            raise SceneError(f"{shown(path)}: {spec.width} x {spec.height} pixels are more than the {MAX_PIXELS} that are read")
+        folder.count_pixels(path, spec.width * spec.height)
         kinds = {oiio.UINT8: np.uint8, oiio.UINT16: np.uint16}
         dtype = kinds.get(spec.format.basetype, np.float32)
         channels = min(spec.nchannels, 4)

@@ -187,6 +187,6 @@ def _environment(where: str, table: Mapping[str, Any], folder: Folder) -> Enviro
         _require(where, table, ["radiance"])
     keys = {key: table[key] for key in ("radiance", "rotation") if key in table}
     if "file" in table:
-        keys["image"] = read_radiance(folder.require(table["file"], f"{where}.file"), folder.warnings)
+        keys["image"] = read_radiance(folder.require(table["file"], f"{where}.file"), folder)
     light: EnvironmentLight = checked(where, lambda: EnvironmentLight(**keys), ".")
     return light

@@ -27,8 +27,8 @@ def read_obj(path: str, folder: Folder) -> GeometryFile:
     corners = face_corners(lines)
     geometry = GeometryFile([], [])
     switches, names = _statements(lines, geometry, folder, path)
-    distinct = list(dict.fromkeys(names))
-    number = np.array([distinct.index(name) for name in names])
+    distinct = {name: k for k, name in enumerate(dict.fromkeys(names))}
+    number = np.array([distinct[name] for name in names])
     if not len(corners.per_face):
         raise SceneError(f"{file}: holds no faces")
     triangles = fans(corners.per_face)
@@ -37,9 +37,12 @@ def read_obj(path: str, folder: Folder) -> GeometryFile:
     material = number[np.searchsorted(switches, face_line)]
     complete = np.all(corners.given[triangles], axis=1)  # (m, 3): do all corners of the triangle have it?
     kind = material * 4 + complete[:, 1] * 2 + complete[:, 2]
-    for value in np.unique(kind):
-        chosen = triangles[kind == value]
-        geometry.parts.append(_part(resolved[chosen], tables, bool(value & 2), bool(value & 1), distinct[value // 4]))
+    order = np.argsort(kind, kind="stable")
+    begins = np.flatnonzero(np.diff(kind[order], prepend=-1))
+    of_number = list(distinct)
+    for chosen in np.split(order, begins[1:]):
+        value = int(kind[chosen[0]])
+        geometry.parts.append(_part(resolved[triangles[chosen]], tables, bool(value & 2), bool(value & 1), of_number[value // 4]))
         geometry.placed.append(Placed(len(geometry.parts) - 1))
     return geometry
 
@@ -51,6 +54,7 @@ def _statements(lines: Lines, geometry: GeometryFile, folder: Folder, path: str)
     other[number_lines] = False
     switches: list[int] = []
     names: list[str | None] = [None]
+    libraries: set[str] = set()
     free_form = 0
     for line in np.flatnonzero(other).tolist():
         keyword, _, rest = lines.words(line).partition(b" ")
@@ -59,7 +63,9 @@ def _statements(lines: Lines, geometry: GeometryFile, folder: Folder, path: str)
             switches.append(line)
             names.append(name)
         elif word == "mtllib":
-            _read_library(lines, line, name, geometry, folder, path)
+            if name not in libraries:
+                libraries.add(name)
+                _read_library(lines, line, name, geometry, folder, path)
         elif word in _FREE_FORM:
             free_form += 1
         elif word not in _IGNORED:

@@ -50,25 +50,26 @@ def _without_comments(data: bytes) -> bytes:
 
 @dataclass
 class Lines:
-    """A text and where its lines begin and end (the newline excluded)."""
+    """A text and where its lines begin and end (the newline excluded). letters: the text and some newlines more."""
 
     file: str
     data: bytes
+    letters: NDArray[np.uint8]
     starts: Integers
     ends: Integers
 
     @staticmethod
     def of(file: str, data: bytes) -> Lines:
-        ends = np.flatnonzero(np.frombuffer(data, np.uint8) == _NEWLINE)
-        return Lines(file, data, np.concatenate([[0], ends[:-1] + 1]), ends)
+        letters = np.frombuffer(data + b"\n\n\n\n", np.uint8)
+        ends = np.flatnonzero(letters[: len(data)] == _NEWLINE)
+        return Lines(file, data, letters, np.concatenate([[0], ends[:-1] + 1]), ends)
 
     def beginning_with(self, keyword: bytes) -> Integers:
-        """Numbers of the lines whose first word is `keyword`."""
-        letters = np.frombuffer(self.data + b"\n" * (len(keyword) + 1), np.uint8)
+        """Numbers of the lines whose first word is `keyword`, of at most three letters."""
         matches = np.ones(len(self.starts), bool)
         for k, letter in enumerate(keyword):
-            matches &= letters[self.starts + k] == letter
-        after = letters[self.starts + len(keyword)]
+            matches &= self.letters[self.starts + k] == letter
+        after = self.letters[self.starts + len(keyword)]
         return np.flatnonzero(matches & ((after == _SPACE) | (after == _NEWLINE)))
 
     def words(self, line: int) -> bytes:
