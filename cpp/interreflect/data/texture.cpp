@@ -153,6 +153,13 @@ vec3 Texture::bilinear(const vec2& uv, int index) const {
     return glm::mix(bottom, top, wy);
 }
 
+vec3 Texture::nearest(const vec2& uv, int index) const {
+    const Level& level = levels_[index];
+    const int x = std::min(static_cast<int>(wrap(uv.x) * static_cast<float>(level.width)), level.width - 1);
+    const int y = std::min(static_cast<int>(wrap(uv.y) * static_cast<float>(level.height)), level.height - 1);
+    return texel(level, x, y);
+}
+
 vec3 Texture::filtered(const vec2& uv, const Footprint& footprint) const {
     const float area = std::fabs(footprint.dx.x * footprint.dy.y - footprint.dx.y * footprint.dy.x);
     const float texels = area * static_cast<float>(width()) * static_cast<float>(height());

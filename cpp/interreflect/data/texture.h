@@ -31,6 +31,8 @@ class Texture {
     vec3 bilinear(const vec2& uv) const { return bilinear(uv, 0); }
     /// Bilinear look-up in one level.
     vec3 bilinear(const vec2& uv, int level) const;
+    /// The nearest texel of one level: for look-ups that are averaged.
+    vec3 nearest(const vec2& uv, int level) const;
     /// Trilinear look-up in the levels whose texels are as large as the footprint (its parallelogram's area, in texels).
     vec3 filtered(const vec2& uv, const Footprint& footprint) const;
     /// The mean over all texels.

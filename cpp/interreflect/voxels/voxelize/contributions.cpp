@@ -1,95 +1,141 @@
 #include "voxels/voxelize/contributions.h"
 
-#include <algorithm>
+#include <oneapi/tbb/enumerable_thread_specific.h>
 
+#include <algorithm>
+#include <span>
+
+#include "math/parallel.h"
 #include "visibility/surface.h"
 
 namespace interreflect {
 namespace {
 
-constexpr std::uint32_t triangles_of_piece = 1024;
+constexpr std::uint32_t triangles_of_piece = 2048;
 
-/// What has been merged into one voxel so far.
-struct Voxel {
-    std::uint32_t cell = 0;
-    float area = 0, total = 0;
-    vec3 albedo{0}, position{0}, normal{0}, emission{0};
-    float largest = -1.0f;
-    const Contribution* representative = nullptr;  // the largest part of a triangle in the cell, the first of equals
-
-    void add(const Contribution& c) {
-        area += c.area;
-        total += c.total;
-        albedo += c.albedo;
-        position += c.position;
-        normal += c.normal * c.area;
-        if (c.area > largest) {
-            largest = c.area;
-            representative = &c;
-        }
+/// Triangles [begin, end) of one instance.
+struct TrianglePiece {
+    std::uint32_t instance, begin, end;
+};
+std::vector<TrianglePiece> triangle_pieces(const Geometry& geometry) {
+    std::vector<TrianglePiece> pieces;
+    for (std::uint32_t i = 0; i < geometry.instances.size(); ++i) {
+        const Group& group = geometry.groups[geometry.instances[i].group];
+        const std::uint32_t end = group.first_triangle + group.triangle_count;
+        for (std::uint32_t t = group.first_triangle; t < end; t += triangles_of_piece)
+            pieces.push_back({i, t, std::min(t + triangles_of_piece, end)});
     }
-};
-
-/// Contributions of one piece in the order of their buckets (ranges of cells); within a bucket, in the order they were emitted.
-struct Sorted {
-    std::vector<std::uint32_t> order, first;  // first[bucket], buckets + 1 of them
-};
-template <class Item>
-Sorted sort_by_bucket(const std::vector<Item>& items, std::size_t buckets, int shift) {
-    Sorted sorted{std::vector<std::uint32_t>(items.size()), std::vector<std::uint32_t>(buckets + 1)};
-    for (const auto& item : items) ++sorted.first[(item.cell >> shift) + 1];
-    for (std::size_t b = 0; b < buckets; ++b) sorted.first[b + 1] += sorted.first[b];
-    std::vector<std::uint32_t> next(sorted.first.begin(), sorted.first.end() - 1);
-    for (std::uint32_t i = 0; i < items.size(); ++i) sorted.order[next[items[i].cell >> shift]++] = i;
-    return sorted;
+    return pieces;
 }
 
+/// False for a triangle without area.
+bool make_voxel_triangle(const Scene& scene, const Domain& domain, std::uint32_t instance, std::uint32_t triangle,
+                         VoxelTriangle& made) {
+    const Corners world = world_corners(*scene.geometry, instance, triangle);
+    made.corner[0] = domain.to_voxels(world.a);
+    made.corner[1] = domain.to_voxels(world.b);
+    made.corner[2] = domain.to_voxels(world.c);
+    const vec3 cross = glm::cross(made.corner[1] - made.corner[0], made.corner[2] - made.corner[0]);
+    const float length = glm::length(cross);
+    if (!(length > 0.0f)) return false;
+    made.normal = cross * (1.0f / (scene.geometry->instances[instance].flips ? -length : length));
+    made.area = 0.5f * length;
+    made.offset = self_hit_offset(world.a, world.b, world.c);
+    const auto& arrays = *scene.geometry->arrays;
+    const uvec3 t = arrays.triangles[triangle];
+    const Material& material = scene.materials[arrays.materials[triangle]];
+    made.material = &material;
+    made.albedo_map = material.albedo_map >= 0 ? scene.textures[material.albedo_map].get() : nullptr;
+    made.emission_map = material.emission_map >= 0 && material.emits() ? scene.textures[material.emission_map].get() : nullptr;
+    made.mask = material.mask >= 0 ? scene.masks[material.mask].get() : nullptr;
+    if (!made.uniform())
+        for (int i = 0; i < 3; ++i) made.texcoord[i] = arrays.texcoords[t[i]];
+    return true;
+}
+
+/// Ranges of cells that are merged at a time: 16,384 cells' voxels stay in a core's own cache.
 struct Buckets {
-    int shift = 14;  // 16,384 cells a bucket: their slots stay in a core's own cache
+    int shift = 14;
     std::size_t count = 1;
 
     explicit Buckets(std::size_t cells) {
         while ((cells >> shift) > 1024) ++shift;
         count = (cells >> shift) + 1;
     }
-    std::size_t cells() const { return std::size_t{1} << shift; }
 };
 
-/// The voxels of one bucket, in ascending order of cells.
-std::vector<Voxel> merge_bucket(std::size_t bucket, const Buckets& buckets, const std::vector<Contributions>& pieces,
-                                const std::vector<Sorted>& surface, const std::vector<Sorted>& emission) {
-    std::vector<Voxel> voxels;
-    std::vector<std::uint32_t> slot(buckets.cells(), 0);  // 1 + index of the cell's voxel
-    const std::uint32_t first_cell = static_cast<std::uint32_t>(bucket << buckets.shift);
-    for (std::size_t p = 0; p < pieces.size(); ++p) {
-        for (std::uint32_t i = surface[p].first[bucket]; i < surface[p].first[bucket + 1]; ++i) {
-            const Contribution& c = pieces[p].surface[surface[p].order[i]];
-            std::uint32_t& at = slot[c.cell - first_cell];
-            if (at == 0) {
-                voxels.push_back({});
-                voxels.back().cell = c.cell;
-                at = static_cast<std::uint32_t>(voxels.size());
-            }
-            voxels[at - 1].add(c);
+/// Contributions of one piece by bucket, within a bucket in the order they were emitted.
+template <class Item>
+struct Sorted {
+    std::span<const Item> items;
+    std::vector<std::uint32_t> first;  // of each bucket, and the end
+
+    std::span<const Item> bucket(std::size_t b) const {
+        return first.empty() ? std::span<const Item>() : items.subspan(first[b], first[b + 1] - first[b]);
+    }
+};
+
+/// Memory that one thread fills with the contributions of its pieces: few large blocks instead of many pages.
+template <class Item>
+class Store {
+  public:
+    Sorted<Item> keep(const std::vector<Item>& items, const Buckets& buckets) {
+        Sorted<Item> sorted;
+        if (items.empty()) return sorted;
+        sorted.first.assign(buckets.count + 1, 0);
+        for (const auto& item : items) ++sorted.first[(item.cell >> buckets.shift) + 1];
+        for (std::size_t b = 0; b < buckets.count; ++b) sorted.first[b + 1] += sorted.first[b];
+        const std::span<Item> out = take(items.size());
+        std::vector<std::uint32_t> next(sorted.first.begin(), sorted.first.end() - 1);
+        for (const auto& item : items) out[next[item.cell >> buckets.shift]++] = item;
+        sorted.items = out;
+        return sorted;
+    }
+
+  private:
+    static constexpr std::size_t items_of_block = (std::size_t{4} << 20) / sizeof(Item);
+    std::span<Item> take(std::size_t count) {
+        if (blocks_.empty() || used_ + count > blocks_.back().size()) {
+            blocks_.emplace_back(std::max(count, items_of_block));
+            used_ = 0;
+        }
+        used_ += count;
+        return blocks_.back().span().subspan(used_ - count, count);
+    }
+    std::vector<Buffer<Item>> blocks_;
+    std::size_t used_ = 0;
+};
+
+/// What has been merged into one voxel so far.
+struct Voxel {
+    float area = 0, total = 0;
+    vec3 albedo{0}, position{0}, normal{0}, emission{0};
+    // The largest part of a triangle in the cell, the first of equals: a point on that triangle.
+    float largest = 0.0f, offset = 0.0f;
+    vec3 point{0}, point_normal{0};
+    std::uint32_t back = 0;
+
+    void add(const Contribution& c) {
+        total += c.total;
+        area += c.area;
+        albedo += c.albedo;
+        position += c.position;
+        normal += c.normal * c.area;
+        if (c.area > largest) {
+            largest = c.area;
+            offset = c.offset;
+            point = c.position;
+            point_normal = c.normal;
+            back = c.back;
         }
     }
-    for (std::size_t p = 0; p < pieces.size(); ++p)
-        for (std::uint32_t i = emission[p].first[bucket]; i < emission[p].first[bucket + 1]; ++i) {
-            const EmissionContribution& e = pieces[p].emission[emission[p].order[i]];
-            voxels[slot[e.cell - first_cell] - 1].emission += e.emission;
-        }
-    std::vector<Voxel> ascending;
-    ascending.reserve(voxels.size());
-    for (const std::uint32_t at : slot)
-        if (at != 0 && voxels[at - 1].area > 0.0f) ascending.push_back(voxels[at - 1]);
-    return ascending;
-}
+};
 
-void write_voxel(const Scene& scene, const Voxel& voxel, std::size_t i, VoxelGrid& grid) {
+void write_voxel(const Voxel& voxel, std::uint32_t cell, std::size_t i, VoxelGrid& grid) {
     const Domain& domain = grid.domain;
     const float share = 1.0f / voxel.area;
-    const vec3 centre = vec3(domain.coordinates(voxel.cell)) + 0.5f;
-    grid.cell[i] = voxel.cell;
+    const vec3 centre = vec3(domain.coordinates(cell)) + 0.5f;
+    grid.cell[i] = cell;
     grid.albedo[i] = voxel.albedo * share;
     grid.emission[i] = voxel.emission * share;
     grid.position[i] = domain.to_world(centre + voxel.position * share);
@@ -97,10 +143,7 @@ void write_voxel(const Scene& scene, const Voxel& voxel, std::size_t i, VoxelGri
     // Opposite sides that cancel leave rounding only: 1e-3 of the area is no direction.
     const float length = glm::length(voxel.normal);
     grid.normal[i] = length > 1e-3f * voxel.area ? voxel.normal / length : vec3(0);
-    const Contribution& c = *voxel.representative;
-    const float offset = self_hit_offset(*scene.geometry, c.instance, c.triangle);
-    const Material& material = scene.materials[scene.material_of(c.triangle)];
-    grid.points[i] = {domain.to_world(centre + c.position / c.area), offset, c.normal, material.two_sided ? 1U : 0U};
+    grid.points[i] = {domain.to_world(centre + voxel.point / voxel.largest), voxel.offset, voxel.point_normal, voxel.back};
 }
 
 void resize(VoxelGrid& grid, std::size_t size) {
@@ -111,6 +154,40 @@ void resize(VoxelGrid& grid, std::size_t size) {
     grid.position = Buffer<vec3>(size);
     grid.opacity = Buffer<float>(size);
     grid.points = Buffer<VoxelPoint>(size);
+}
+
+/// What one thread needs, kept from piece to piece.
+struct Worker {
+    ContributionSink sink;
+    Store<Contribution> surface;
+    Store<EmissionContribution> emission;
+    std::uint64_t samples = 0;
+};
+
+/// Contributions of all pieces, in their order.
+struct Pieces {
+    std::vector<Sorted<Contribution>> surface;
+    std::vector<Sorted<EmissionContribution>> emission;
+};
+
+void merge_bucket(std::size_t bucket, const Buckets& buckets, const CellMarks& marks, const Pieces& pieces,
+                  std::vector<Voxel>& voxels, VoxelGrid& grid) {
+    const std::uint64_t begin = static_cast<std::uint64_t>(bucket) << buckets.shift;
+    const std::uint64_t end = std::min<std::uint64_t>(begin + (std::uint64_t{1} << buckets.shift), grid.domain.cell_count());
+    if (begin >= end) return;
+    const std::uint32_t first = marks.before(begin);
+    voxels.assign(marks.before(end) - first, Voxel{});
+    for (const auto& piece : pieces.surface)
+        for (const Contribution& c : piece.bucket(bucket))
+            if (marks.marked(c.cell)) voxels[marks.before(c.cell) - first].add(c);
+    for (const auto& piece : pieces.emission)
+        for (const EmissionContribution& e : piece.bucket(bucket)) voxels[marks.before(e.cell) - first].emission += e.emission;
+    std::size_t i = 0;
+    for (std::uint64_t cell = begin; cell < end; ++cell)
+        if (marks.marked(static_cast<std::uint32_t>(cell))) {
+            write_voxel(voxels[i], static_cast<std::uint32_t>(cell), first + i, grid);
+            ++i;
+        }
 }
 
 }  // namespace
@@ -124,60 +201,44 @@ int VoxelTriangle::level(const Texture& texture, float sample_area) const {
     return std::min((std::ilogb(texels) + 1) / 2, texture.levels() - 1);
 }
 
-bool make_voxel_triangle(const Scene& scene, const Domain& domain, std::uint32_t instance, std::uint32_t triangle,
-                         VoxelTriangle& made) {
-    const Corners world = world_corners(*scene.geometry, instance, triangle);
-    made.corner[0] = domain.to_voxels(world.a);
-    made.corner[1] = domain.to_voxels(world.b);
-    made.corner[2] = domain.to_voxels(world.c);
-    const vec3 cross = glm::cross(made.corner[1] - made.corner[0], made.corner[2] - made.corner[0]);
-    const float length = glm::length(cross);
-    if (!(length > 0.0f)) return false;
-    made.normal = cross / (scene.geometry->instances[instance].flips ? -length : length);
-    made.area = 0.5f * length;
-    made.instance = instance;
-    made.triangle = triangle;
-    const auto& arrays = *scene.geometry->arrays;
-    const uvec3 t = arrays.triangles[triangle];
-    for (int i = 0; i < 3; ++i) made.texcoord[i] = arrays.texcoords[t[i]];
-    const Material& material = scene.materials[arrays.materials[triangle]];
-    made.material = &material;
-    made.albedo_map = material.albedo_map >= 0 ? scene.textures[material.albedo_map].get() : nullptr;
-    made.emission_map = material.emission_map >= 0 && material.emits() ? scene.textures[material.emission_map].get() : nullptr;
-    made.mask = material.mask >= 0 ? scene.masks[material.mask].get() : nullptr;
-    return true;
-}
-
-std::vector<TrianglePiece> triangle_pieces(const Geometry& geometry) {
-    std::vector<TrianglePiece> pieces;
-    for (std::uint32_t i = 0; i < geometry.instances.size(); ++i) {
-        const Group& group = geometry.groups[geometry.instances[i].group];
-        const std::uint32_t end = group.first_triangle + group.triangle_count;
-        for (std::uint32_t t = group.first_triangle; t < end; t += triangles_of_piece)
-            pieces.push_back({i, t, std::min(t + triangles_of_piece, end)});
+void CellMarks::number() {
+    std::uint32_t sum = 0;
+    for (std::size_t i = 0; i < words_.size(); ++i) {
+        first_[i] = sum;
+        sum += static_cast<std::uint32_t>(std::popcount(words_[i]));
     }
-    return pieces;
+    first_.back() = sum;
 }
 
-VoxelGrid merge_contributions(const Scene& scene, const Domain& domain, std::vector<Contributions> pieces) {
+VoxelGrid voxelize_triangles(const Scene& scene, const Domain& domain, const EmitTriangle& emit) {
+    const auto triangles = triangle_pieces(*scene.geometry);
     const Buckets buckets(domain.cell_count());
-    std::vector<Sorted> surface(pieces.size()), emission(pieces.size());
-    parallel_pieces(pieces.size(), [&](std::size_t i) {
-        surface[i] = sort_by_bucket(pieces[i].surface, buckets.count, buckets.shift);
-        emission[i] = sort_by_bucket(pieces[i].emission, buckets.count, buckets.shift);
+    CellMarks marks(domain.cell_count());
+    Pieces pieces{std::vector<Sorted<Contribution>>(triangles.size()),
+                  std::vector<Sorted<EmissionContribution>>(triangles.size())};
+    oneapi::tbb::enumerable_thread_specific<Worker> workers([&] { return Worker{ContributionSink(domain, marks), {}, {}, 0}; });
+    parallel_pieces(triangles.size(), [&](std::size_t i) {
+        Worker& worker = workers.local();
+        worker.sink.clear();
+        VoxelTriangle triangle;
+        for (std::uint32_t t = triangles[i].begin; t < triangles[i].end; ++t) {
+            if (!make_voxel_triangle(scene, domain, triangles[i].instance, t, triangle)) continue;
+            worker.sink.begin(triangle);
+            emit(triangle, worker.sink);
+            worker.sink.end();
+        }
+        pieces.surface[i] = worker.surface.keep(worker.sink.surface, buckets);
+        pieces.emission[i] = worker.emission.keep(worker.sink.emission, buckets);
+        worker.samples += worker.sink.samples;
     });
-    std::vector<std::vector<Voxel>> voxels(buckets.count);
-    parallel_pieces(buckets.count, [&](std::size_t b) { voxels[b] = merge_bucket(b, buckets, pieces, surface, emission); });
 
-    std::vector<std::size_t> first(buckets.count + 1);
-    for (std::size_t b = 0; b < buckets.count; ++b) first[b + 1] = first[b] + voxels[b].size();
+    marks.number();
     VoxelGrid grid;
     grid.domain = domain;
-    resize(grid, first.back());
-    parallel_pieces(buckets.count, [&](std::size_t b) {
-        for (std::size_t i = 0; i < voxels[b].size(); ++i) write_voxel(scene, voxels[b][i], first[b] + i, grid);
-    });
-    for (const auto& piece : pieces) grid.counts.samples += piece.samples;
+    resize(grid, marks.count());
+    oneapi::tbb::enumerable_thread_specific<std::vector<Voxel>> scratch;
+    parallel_pieces(buckets.count, [&](std::size_t b) { merge_bucket(b, buckets, marks, pieces, scratch.local(), grid); });
+    for (const Worker& worker : workers) grid.counts.samples += worker.samples;
     grid.counts.voxels = grid.size();
     return grid;
 }

@@ -4,13 +4,14 @@
 /// pieces, so the result is the same at any number of threads.
 #pragma once
 #include <array>
-#include <cmath>
+#include <atomic>
+#include <bit>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "data/scene.h"
 #include "data/voxel_grid.h"
-#include "math/parallel.h"
 
 namespace interreflect {
 
@@ -18,66 +19,92 @@ namespace interreflect {
 struct VoxelTriangle {
     vec3 corner[3];
     vec2 texcoord[3];
-    vec3 normal{0};  // unit, front side
-    float area = 0;  // in faces of a voxel
-    std::uint32_t instance = 0, triangle = 0;
+    vec3 normal{0};    // unit, front side
+    float area = 0;    // in faces of a voxel
+    float offset = 0;  // of rays that leave it, world space
     const Material* material = nullptr;
     const Texture* albedo_map = nullptr;
     const Texture* emission_map = nullptr;
     const Mask* mask = nullptr;
 
-    vec2 texcoord_at(float u, float v) const { return texcoord[0] * (1.0f - u - v) + texcoord[1] * u + texcoord[2] * v; }
+    bool uniform() const { return albedo_map == nullptr && emission_map == nullptr && mask == nullptr; }
     /// The mip level whose texels are as large as `sample_area` (faces of a voxel) of this triangle.
     int level(const Texture& texture, float sample_area) const;
 };
 
-/// False for a triangle without area.
-bool make_voxel_triangle(const Scene& scene, const Domain& domain, std::uint32_t instance, std::uint32_t triangle,
-                         VoxelTriangle& made);
-
 /// The part of one triangle in one cell. Sums are weighted by area.
 struct Contribution {
     std::uint32_t cell = 0;
-    std::uint32_t instance = 0, triangle = 0;
     float area = 0;    // solid part, in faces of a voxel
     float total = 0;   // with the holes of its mask
     vec3 albedo{0};    // sum
     vec3 position{0};  // sum, in voxels from the cell's centre
     vec3 normal{0};    // unit
+    float offset = 0;  // of the triangle
+    std::uint32_t back = 0;
 };
 struct EmissionContribution {
     std::uint32_t cell = 0;
     vec3 emission{0};  // sum
 };
-struct Contributions {
+
+/// The cells that hold something solid, marked by all threads; the marks owe nothing to their order.
+class CellMarks {
+  public:
+    explicit CellMarks(std::size_t cells) : words_((cells + 63) / 64), first_(words_.size() + 1) {}
+
+    void mark(std::uint32_t cell) {
+        const std::uint64_t bit = std::uint64_t{1} << (cell & 63U);
+        std::atomic_ref<std::uint64_t> word(words_[cell >> 6U]);
+        if ((word.load(std::memory_order_relaxed) & bit) == 0) word.fetch_or(bit, std::memory_order_relaxed);
+    }
+    /// Numbers the marked cells in ascending order.
+    void number();
+    bool marked(std::uint32_t cell) const { return ((words_[cell >> 6U] >> (cell & 63U)) & 1U) != 0; }
+    /// How many marked cells come before this one.
+    std::uint32_t before(std::uint64_t cell) const {
+        const std::size_t word = cell >> 6U;
+        if (word == words_.size()) return first_.back();
+        const std::uint64_t below = (std::uint64_t{1} << (cell & 63U)) - 1;
+        return first_[word] + static_cast<std::uint32_t>(std::popcount(words_[word] & below));
+    }
+    std::uint32_t count() const { return first_.back(); }
+
+  private:
+    std::vector<std::uint64_t> words_;
+    std::vector<std::uint32_t> first_;
+};
+
+/// Adds up the samples of one triangle by cell before they are kept: neighbouring samples mostly share one of 2 x 2 x 2 cells.
+class ContributionSink {
+  public:
+    ContributionSink(const Domain& domain, CellMarks& marks) : domain_(domain), marks_(marks) {}
+
     std::vector<Contribution> surface;
     std::vector<EmissionContribution> emission;
     std::uint64_t samples = 0;
-};
-
-/// Adds up the samples of one triangle by cell before they are written: neighbouring samples mostly share one of 2 x 2 x 2 cells.
-class ContributionSink {
-  public:
-    ContributionSink(const Domain& domain, Contributions& out) : domain_(domain), out_(out) {}
 
     void begin(const VoxelTriangle& triangle) { triangle_ = &triangle; }
     /// A sample of the current triangle at `position` voxels that stands for `area`; dropped outside the domain.
-    void add(const vec3& position, float area, bool solid, const vec3& albedo, const vec3& emission) {
+    void add(const vec3& position, float area, bool solid, const vec3& albedo, const vec3& emitted) {
         const vec3 floor = glm::floor(position);
-        add(ivec3(floor), position - floor - 0.5f, area, solid, albedo, emission);
+        add(ivec3(floor), position - floor - 0.5f, area, solid, albedo, emitted);
     }
     /// The same with the cell given, and the position from its centre.
-    void add(const ivec3& at, const vec3& local, float area, bool solid, const vec3& albedo, const vec3& emission) {
+    void add(const ivec3& at, const vec3& local, float area, bool solid, const vec3& albedo, const vec3& emitted) {
         const ivec3& n = domain_.cells;
         if (static_cast<unsigned>(at.x) >= static_cast<unsigned>(n.x) ||
             static_cast<unsigned>(at.y) >= static_cast<unsigned>(n.y) ||
             static_cast<unsigned>(at.z) >= static_cast<unsigned>(n.z))
             return;
-        ++out_.samples;
+        ++samples;
         const std::uint32_t cell = domain_.cell(at);
-        Slot& slot = slots_[static_cast<unsigned>((at.x & 1) | (at.y & 1) << 1 | (at.z & 1) << 2)];
-        if (slot.cell != cell) {
-            flush(slot);
+        const unsigned number = static_cast<unsigned>((at.x & 1) | (at.y & 1) << 1 | (at.z & 1) << 2);
+        Slot& slot = slots_[number];
+        if ((used_ >> number & 1U) == 0 || slot.cell != cell) {
+            if ((used_ >> number & 1U) != 0) flush(slot);
+            used_ |= 1U << number;
+            slot = Slot{};
             slot.cell = cell;
         }
         slot.total += area;
@@ -85,59 +112,39 @@ class ContributionSink {
         slot.area += area;
         slot.albedo += albedo * area;
         slot.position += local * area;
-        slot.emission += emission * area;
+        slot.emission += emitted * area;
     }
     void end() {
-        for (Slot& slot : slots_) flush(slot);
+        for (; used_ != 0; used_ &= used_ - 1) flush(slots_[static_cast<unsigned>(std::countr_zero(used_))]);
+    }
+    void clear() {
+        surface.clear();
+        emission.clear();
+        samples = 0;
     }
 
   private:
-    static constexpr std::uint32_t none = ~0U;
     struct Slot {
-        std::uint32_t cell = none;
+        std::uint32_t cell = 0;
         float area = 0, total = 0;
         vec3 albedo{0}, position{0}, emission{0};
     };
-    void flush(Slot& slot) {
-        if (slot.cell == none) return;
-        out_.surface.push_back({slot.cell, triangle_->instance, triangle_->triangle, slot.area, slot.total, slot.albedo,
-                                slot.position, triangle_->normal});
-        if (max_component(slot.emission) > 0.0f) out_.emission.push_back({slot.cell, slot.emission});
-        slot = Slot{};
+    void flush(const Slot& slot) {
+        surface.push_back({slot.cell, slot.area, slot.total, slot.albedo, slot.position, triangle_->normal, triangle_->offset,
+                           triangle_->material->two_sided ? 1U : 0U});
+        if (slot.area > 0.0f) marks_.mark(slot.cell);
+        if (max_component(slot.emission) > 0.0f) emission.push_back({slot.cell, slot.emission});
     }
 
     const Domain& domain_;
-    Contributions& out_;
+    CellMarks& marks_;
     const VoxelTriangle* triangle_ = nullptr;
+    unsigned used_ = 0;
     std::array<Slot, 8> slots_;
 };
 
-/// Triangles [begin, end) of one instance.
-struct TrianglePiece {
-    std::uint32_t instance, begin, end;
-};
-std::vector<TrianglePiece> triangle_pieces(const Geometry& geometry);
-
-/// The voxels that the contributions of all pieces make up.
-VoxelGrid merge_contributions(const Scene& scene, const Domain& domain, std::vector<Contributions> pieces);
-
-/// Calls emit(triangle, sink) for every triangle of the scene and merges what it adds.
-template <class Emit>
-VoxelGrid voxelize_triangles(const Scene& scene, const Domain& domain, const Emit& emit) {
-    const auto pieces = triangle_pieces(*scene.geometry);
-    std::vector<Contributions> contributions(pieces.size());
-    parallel_pieces(pieces.size(), [&](std::size_t i) {
-        ContributionSink sink(domain, contributions[i]);
-        contributions[i].surface.reserve(2 * (pieces[i].end - pieces[i].begin));
-        VoxelTriangle triangle;
-        for (std::uint32_t t = pieces[i].begin; t < pieces[i].end; ++t) {
-            if (!make_voxel_triangle(scene, domain, pieces[i].instance, t, triangle)) continue;
-            sink.begin(triangle);
-            emit(triangle, sink);
-            sink.end();
-        }
-    });
-    return merge_contributions(scene, domain, std::move(contributions));
-}
+/// Calls `emit` for every triangle of the scene and merges what it adds to the sink.
+using EmitTriangle = std::function<void(const VoxelTriangle&, ContributionSink&)>;
+VoxelGrid voxelize_triangles(const Scene& scene, const Domain& domain, const EmitTriangle& emit);
 
 }  // namespace interreflect

@@ -82,7 +82,7 @@ vec2 barycentric(const std::array<vec3, 3>& p, const vec3& at) {
 /// Adds the part of a triangle in one cell: by its centroid where the surface is uniform, else by points spread over it.
 void add_part(const VoxelTriangle& t, const std::array<vec3, 3>& local, const Polygon& part, const ivec3& cell, int samples,
               ContributionSink& sink) {
-    const bool uniform = t.albedo_map == nullptr && t.emission_map == nullptr && t.mask == nullptr;
+    const bool uniform = t.uniform();
     const float whole = area_of(part);
     const float footprint = std::min(t.area, 1.0f / static_cast<float>(samples));
     for (int i = 1; i + 1 < part.count; ++i) {
@@ -102,7 +102,8 @@ void add_part(const VoxelTriangle& t, const std::array<vec3, 3>& local, const Po
             const vec2 at = uniform_triangle(u);
             const vec3 position = a * (1.0f - at.x - at.y) + b * at.x + c * at.y;
             const vec2 weights = barycentric(local, position);
-            const vec2 uv = t.texcoord_at(weights.x, weights.y);
+            const vec2 uv =
+                t.texcoord[0] * (1.0f - weights.x - weights.y) + t.texcoord[1] * weights.x + t.texcoord[2] * weights.y;
             const bool solid = t.mask == nullptr || t.mask->solid(uv);
             vec3 albedo = t.material->albedo, emission = t.material->emission;
             if (t.albedo_map != nullptr) albedo *= t.albedo_map->bilinear(uv, t.level(*t.albedo_map, footprint));

@@ -16,17 +16,14 @@ struct Appearance {
         if (t.albedo_map != nullptr) albedo_level = t.level(*t.albedo_map, area);
         if (t.emission_map != nullptr) emission_level = t.level(*t.emission_map, area);
     }
-    bool uniform() const {
-        return triangle.albedo_map == nullptr && triangle.emission_map == nullptr && triangle.mask == nullptr;
-    }
     vec3 albedo(const vec2& uv) const {
         return triangle.albedo_map == nullptr ? triangle.material->albedo
-                                              : triangle.material->albedo * triangle.albedo_map->bilinear(uv, albedo_level);
+                                              : triangle.material->albedo * triangle.albedo_map->nearest(uv, albedo_level);
     }
     vec3 emission(const vec2& uv) const {
         return triangle.emission_map == nullptr
                    ? triangle.material->emission
-                   : triangle.material->emission * triangle.emission_map->bilinear(uv, emission_level);
+                   : triangle.material->emission * triangle.emission_map->nearest(uv, emission_level);
     }
 };
 
@@ -45,8 +42,8 @@ void sample_triangle(const VoxelTriangle& t, float spacing, ContributionSink& si
     const vec2 t0 = t.texcoord[base], t1 = t.texcoord[(base + 1) % 3], t2 = t.texcoord[(base + 2) % 3];
     const float height = 2.0f * t.area / longest;
     const int rows = std::max(1, static_cast<int>(std::ceil(height / spacing)));
+    const bool uniform = t.uniform();
     const Appearance look(t, std::min(t.area, spacing * spacing));
-    const bool uniform = look.uniform();
     for (int row = 0; row < rows; ++row) {
         const float v = (static_cast<float>(row) + 0.5f) / static_cast<float>(rows), rest = 1.0f - v;
         const int count = std::max(1, static_cast<int>(std::ceil(longest * rest / spacing)));
