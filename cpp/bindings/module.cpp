@@ -3,6 +3,7 @@
 
 #include "bindings/rooms.h"
 #include "bindings/run.h"
+#include "sources_digest.h"
 
 namespace py = pybind11;
 using namespace interreflect::bindings;
@@ -21,7 +22,8 @@ PYBIND11_MODULE(_core, m) {
         "_rebuild", [](const py::object& cls, const py::dict& knobs) { return cls(**knobs); },
         "Makes a technique again from its knobs (pickle).");
     m.attr("build_info") = py::dict(py::arg("version") = INTERREFLECT_VERSION, py::arg("commit") = INTERREFLECT_COMMIT,
-                                    py::arg("compiler") = "g++ " __VERSION__, py::arg("flags") = INTERREFLECT_FLAGS);
+                                    py::arg("compiler") = "g++ " __VERSION__, py::arg("flags") = INTERREFLECT_FLAGS,
+                                    py::arg("sources") = INTERREFLECT_SOURCES);
     py::class_<Threads>(m, "Threads", "Context manager: work inside uses at most `limit` threads; None: all.")
         .def(py::init([](const std::optional<int>& limit) {
                  if (limit && *limit < 1) throw py::value_error("threads must be at least 1, got " + std::to_string(*limit));

@@ -63,7 +63,7 @@ def about() -> About:
     build = _build_info()
     return About(
         version=_version("interreflect") or str(build.get("version", UNKNOWN)),
-        commit=str(build.get("commit") or _commit()),
+        commit=_commit() or str(build.get("commit") or UNKNOWN),
         processor=_processor(),
         threads=len(os.sched_getaffinity(0)),
         memory_bytes=os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES"),
@@ -98,13 +98,16 @@ def _processor() -> str:
 
 
 def _commit() -> str:
-    """The checked-out commit, with "-dirty" if tracked files differ; "unknown" outside a checkout."""
-    folder = Path(__file__).resolve().parent
+    """The commit that is checked out, with "-dirty" if tracked files differ from it; empty where this file is in no checkout."""
+    here = Path(__file__).resolve()
+    tracked = _git(here.parent, "ls-files", "--error-unmatch", here.name)
+    return _git(here.parent, "describe", "--always", "--dirty", "--abbrev=12", "--exclude=*") if tracked else ""
+
+
+def _git(folder: Path, *arguments: str) -> str:
+    """What git prints; empty where it fails or is not there."""
     try:
-        done = subprocess.run(
-            ["git", "-C", str(folder), "describe", "--always", "--dirty", "--abbrev=12", "--exclude=*"],
-            capture_output=True, text=True, timeout=5, check=False,
-        )  # fmt: skip
+        done = subprocess.run(["git", "-C", str(folder), *arguments], capture_output=True, text=True, timeout=5, check=False)
     except (OSError, subprocess.TimeoutExpired):
-        return UNKNOWN
-    return done.stdout.strip() if done.returncode == 0 else UNKNOWN
+        return ""
+    return done.stdout.strip() if done.returncode == 0 else ""
