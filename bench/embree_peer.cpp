@@ -7,25 +7,19 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
-#include <chrono>
 #include <limits>
+#include <stdexcept>
 #include <vector>
 
+#include "bench/ray_calls.h"
+#include "bench/stopwatch.h"
+#include "bench/throughput.h"
 #include "data/camera.h"
 
 namespace {
 namespace py = pybind11;
 using namespace interreflect;
-
-class Stopwatch {
-  public:
-    double milliseconds() const {
-        return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count();
-    }
-
-  private:
-    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
+using bench::Stopwatch;
 
 template <class T>
 using Array = py::array_t<T, py::array::c_style | py::array::forcecast>;
@@ -114,6 +108,14 @@ class EmbreePeer {
         return watch.milliseconds();
     }
 
+    /// Milliseconds for any rays (n, 3) by one of Embree's calls: width 1, 8, 16, or 256 for a stream.
+    double trace(const Array<float>& origins, const Array<float>& directions, int width, bool any_hit, bool coherent) {
+        if (origins.ndim() != 2 || origins.shape(1) != 3 || directions.size() != origins.size())
+            throw std::invalid_argument("origins and directions must both be (n, 3)");
+        const bench::RayList rays{origins.data(), directions.data(), static_cast<std::size_t>(origins.shape(0))};
+        return bench::trace(scene_, rays, width, any_hit, coherent);
+    }
+
   private:
     void primary_packet(const CameraRays& rays, int x0, int y0) {
         RTCRayHit16 query;
@@ -166,5 +168,11 @@ PYBIND11_MODULE(_peers, m) {
             py::arg("position"), py::arg("target"), py::arg("up"), py::arg("fov_x"), py::arg("width"), py::arg("height"),
             "Milliseconds for the primary rays of a picture, 16 wide.")
         .def("shadow", &EmbreePeer::shadow, py::arg("origins"), py::arg("direction"),
-             "Milliseconds for one shadow ray from each origin (n, 3), 16 wide.");
+             "Milliseconds for one shadow ray from each origin (n, 3), 16 wide.")
+        .def("trace", &EmbreePeer::trace, py::arg("origins"), py::arg("directions"), py::arg("width"), py::arg("any_hit"),
+             py::arg("coherent"), "Milliseconds for rays (n, 3) by one of Embree's calls: width 1, 8, 16, or 256 for a stream.");
+    m.def("read_bandwidth", &bench::read_bandwidth, py::arg("repeats"), "GB/s, all cores, best of repeats.");
+    m.def("triad_bandwidth", &bench::triad_bandwidth, py::arg("repeats"), "GB/s of a = b + s c, all cores, best of repeats.");
+    m.def("multiply_add_rate", &bench::multiply_add_rate, py::arg("repeats"), "Single-precision GFLOP/s, all cores, best.");
+    m.def("vector_bytes", &bench::vector_bytes, "Bytes of the widest vectors, which the rates above used.");
 }

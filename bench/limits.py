@@ -1,0 +1,60 @@
+"""Least milliseconds of each kernel: the fewest bytes it must move and operations it must do, over what the machine can do."""
+
+from __future__ import annotations
+
+from bench.calibration import Calibration
+
+GBUFFER_BYTES = 6 * 12 + 2 * 4 + 3 * 4  # a pixel: six vectors, two floats, three numbers
+MILLION, GIGA = 1e6, 1e9
+
+
+def move(c: Calibration, count: float) -> float:
+    """Bytes over the triad bandwidth, which both reads and writes."""
+    return 1e3 * count / (c.triad * GIGA)
+
+
+def trace(c: Calibration, kind: str, count: float) -> float:
+    """Rays over the rate of Embree's fastest call for that kind, in this run."""
+    return 1e3 * count / (c.best(kind) * MILLION)
+
+
+def compute(c: Calibration, operations: float) -> float:
+    """Operations over the rate of fused multiply-adds, two each."""
+    return 1e3 * operations / (c.multiply_add * GIGA)
+
+
+def hierarchy(c: Calibration, vertices: int, triangles: int) -> float:
+    """Each vertex and index read once, a hierarchy of 64 bytes a triangle (Embree's 17 MiB for Sponza) written once."""
+    return move(c, 12 * vertices + 12 * triangles + 64 * triangles)
+
+
+def gbuffer(c: Calibration, pixels: int) -> float:
+    """One primary ray a pixel, while the pictures stream out."""
+    return max(trace(c, "primary", pixels), move(c, GBUFFER_BYTES * pixels))
+
+
+def sun_shadows(c: Calibration, pixels: int) -> float:
+    """One shadow ray a pixel, while position and normal stream in and radiance out."""
+    return max(trace(c, "sun shadow", pixels), move(c, 3 * 12 * pixels))
+
+
+def path_sample(c: Calibration, pixels: int, bounces: float) -> float:
+    """One path a pixel: a primary ray; at each vertex a shadow ray to the sun and one to the sky; between vertices a nearest hit.
+
+    The bounce rays share their directions within a tile (unbiased, as every tile has its own). Later vertices see the sun along parallel
+    rays too, but from places that do not lie side by side: the rate of the any-hit rays.
+    """
+    first = trace(c, "primary", pixels) + trace(c, "sun shadow", pixels) + trace(c, "occlusion", pixels)
+    later = trace(c, "bounce, shared in a tile", pixels) + 2 * trace(c, "occlusion", pixels)
+    return first + bounces * later
+
+
+def cone_march(c: Calibration, steps: float) -> float:
+    """A step blends two trilinear look-ups of eight texels with four channels (64 multiply-adds) and adds the result (four)."""
+    return compute(c, 2 * (64 + 4) * steps)
+
+
+def voxel_frame(c: Calibration, pixels: int, steps: float, samples: float, voxels: float) -> float:
+    """G-buffer, sun shadows, cones; each surface sample and voxel is written and read once (48 bytes), each voxel asks the sun once."""
+    voxel_light = trace(c, "occlusion", voxels) + move(c, 2 * 48 * (samples + voxels))
+    return gbuffer(c, pixels) + sun_shadows(c, pixels) + cone_march(c, steps) + voxel_light
