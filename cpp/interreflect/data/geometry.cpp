@@ -144,7 +144,7 @@ std::shared_ptr<const Geometry> make_geometry(std::span<const MeshView> meshes, 
         }
         geometry->instances.push_back(make_instance(found->second, placement));
     }
-    arrays->vertices.resize(arrays->positions.size());
+    arrays->vertices = Buffer<Vertex>(arrays->positions.size());
     for (std::size_t i = 0; i < arrays->vertices.size(); ++i)
         arrays->vertices[i] = {arrays->positions[i], arrays->normals[i], arrays->texcoords[i]};
     geometry->arrays = std::move(arrays);

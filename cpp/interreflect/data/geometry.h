@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "data/buffer.h"
 #include "math/vectors.h"
 
 namespace interreflect {
@@ -40,7 +41,7 @@ struct GeometryArrays {
     std::vector<vec2> texcoords;  // (0, 0) without texture coordinates
     std::vector<uvec3> triangles;
     std::vector<std::uint32_t> materials;  // one a triangle
-    std::vector<Vertex> vertices;          // positions, normals and texcoords side by side, for those who interpolate them
+    Buffer<Vertex> vertices;               // positions, normals and texcoords side by side, for those who interpolate them
 };
 struct Group {
     std::uint32_t first_triangle = 0, triangle_count = 0;

@@ -69,49 +69,42 @@ Texture Texture::from_srgb8(std::span<const std::uint8_t> pixels, int width, int
     if (channels != 3 && channels != 4) throw std::invalid_argument("texture: 3 or 4 channels expected");
     check_size(pixels.size(), width, height, channels);
     Texture texture;
-    Level level{width, height, std::vector<std::uint32_t>(static_cast<std::size_t>(width) * height), {}};
+    texture.allocate_levels(width, height, true);
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x) {
             const auto* p = &pixels[(static_cast<std::size_t>(height - 1 - y) * width + x) * channels];
-            level.srgb[static_cast<std::size_t>(y) * width + x] = static_cast<std::uint32_t>(p[0] | p[1] << 8 | p[2] << 16);
+            texture.srgb_[static_cast<std::size_t>(y) * width + x] = static_cast<std::uint32_t>(p[0] | p[1] << 8 | p[2] << 16);
         }
-    texture.levels_.push_back(std::move(level));
-    texture.build_levels();
+    texture.fill_levels();
     return texture;
 }
 
 Texture Texture::from_linear(std::span<const float> pixels, int width, int height) {
     check_size(pixels.size(), width, height, 3);
     Texture texture;
-    Level level{width, height, {}, std::vector<vec3>(static_cast<std::size_t>(width) * height)};
+    texture.allocate_levels(width, height, false);
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x) {
             const auto* p = &pixels[(static_cast<std::size_t>(height - 1 - y) * width + x) * 3];
-            level.linear[static_cast<std::size_t>(y) * width + x] = {p[0], p[1], p[2]};
+            texture.linear_[static_cast<std::size_t>(y) * width + x] = {p[0], p[1], p[2]};
         }
-    texture.levels_.push_back(std::move(level));
-    texture.build_levels();
+    texture.fill_levels();
     return texture;
 }
 
-std::size_t Texture::bytes() const {
-    std::size_t sum = 0;
-    for (const auto& level : levels_) sum += level.srgb.size() * sizeof(std::uint32_t) + level.linear.size() * sizeof(vec3);
-    return sum;
-}
+std::size_t Texture::bytes() const { return srgb_.bytes() + linear_.bytes(); }
 
-vec3 Texture::texel(const Level& level, int x, int y) {
-    const std::size_t i = static_cast<std::size_t>(y) * level.width + x;
-    if (level.srgb.empty()) return level.linear[i];
-    const std::uint32_t s = level.srgb[i];
+vec3 Texture::texel(const Level& level, int x, int y) const {
+    const std::size_t i = static_cast<std::size_t>(level.first) + static_cast<std::size_t>(y) * level.width + x;
+    if (srgb_.empty()) return linear_[i];
+    const std::uint32_t s = srgb_[i];
     const auto& table = decode_table();
     return {table[s & 255], table[(s >> 8) & 255], table[(s >> 16) & 255]};
 }
 
-Texture::Level Texture::half_size(const Level& fine) {
-    Level coarse{std::max(1, fine.width / 2), std::max(1, fine.height / 2), {}, {}};
-    const auto count = static_cast<std::size_t>(coarse.width) * coarse.height;
-    fine.srgb.empty() ? coarse.linear.resize(count) : coarse.srgb.resize(count);
+/// Fills a level from the finer one before it.
+void Texture::fill_level(std::size_t number) {
+    const Level fine = levels_[number - 1], coarse = levels_[number];
     parallel_blocks(coarse.height, 16, [&](std::size_t begin, std::size_t end) {
         for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
             const Taps ty = taps(y, fine.height, coarse.height);
@@ -121,20 +114,35 @@ Texture::Level Texture::half_size(const Level& fine) {
                 for (int j = 0; j < ty.count; ++j)
                     for (int i = 0; i < tx.count; ++i)
                         sum += texel(fine, tx.first + i, ty.first + j) * (tx.weight[i] * ty.weight[j]);
-                const std::size_t out = static_cast<std::size_t>(y) * coarse.width + x;
-                if (fine.srgb.empty())
-                    coarse.linear[out] = sum;
+                const std::size_t out = static_cast<std::size_t>(coarse.first) + static_cast<std::size_t>(y) * coarse.width + x;
+                if (srgb_.empty())
+                    linear_[out] = sum;
                 else
-                    coarse.srgb[out] = static_cast<std::uint32_t>(linear_to_srgb(sum.x) | linear_to_srgb(sum.y) << 8 |
-                                                                  linear_to_srgb(sum.z) << 16);
+                    srgb_[out] = static_cast<std::uint32_t>(linear_to_srgb(sum.x) | linear_to_srgb(sum.y) << 8 |
+                                                            linear_to_srgb(sum.z) << 16);
             }
         }
     });
-    return coarse;
 }
 
-void Texture::build_levels() {
-    while (levels_.back().width > 1 || levels_.back().height > 1) levels_.push_back(half_size(levels_.back()));
+void Texture::allocate_levels(int w, int h, bool srgb) {
+    // A chain holds at most twice the finest level (a texture one texel wide); its texels are numbered with 31 bits.
+    if (static_cast<std::size_t>(w) * h >= (std::size_t{1} << 30)) throw std::invalid_argument("texture: more than 2^30 pixels");
+    std::int32_t total = 0;
+    while (true) {
+        levels_.push_back({w, h, total});
+        total += w * h;
+        if (w == 1 && h == 1) break;
+        w = std::max(1, w / 2), h = std::max(1, h / 2);
+    }
+    if (srgb)
+        srgb_ = Buffer<std::uint32_t>(total);
+    else
+        linear_ = Buffer<vec3>(total);
+}
+
+void Texture::fill_levels() {
+    for (std::size_t i = 1; i < levels_.size(); ++i) fill_level(i);
 }
 
 vec3 Texture::bilinear(const vec2& uv, int index) const {
@@ -171,17 +179,19 @@ vec3 Texture::filtered(const vec2& uv, const Footprint& footprint) const {
     return glm::mix(bilinear(uv, fine), bilinear(uv, fine + 1), t);
 }
 
-Mask::Mask(std::span<const std::uint8_t> solid, int width, int height) : width_(width), height_(height), solid_(solid.size()) {
+Mask::Mask(std::span<const std::uint8_t> solid, int width, int height)
+    : width_(width), height_(height), words_((width + 31) / 32), solid_(static_cast<std::size_t>(words_) * height) {
     check_size(solid.size(), width, height, 1);
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x)
-            solid_[static_cast<std::size_t>(y) * width + x] = solid[static_cast<std::size_t>(height - 1 - y) * width + x] != 0;
+            solid_[static_cast<std::size_t>(y) * words_ + x / 32] |=
+                static_cast<std::uint32_t>(solid[static_cast<std::size_t>(height - 1 - y) * width + x] != 0) << (x % 32);
 }
 
 bool Mask::solid(const vec2& uv) const {
     const int x = std::min(static_cast<int>(wrap(uv.x) * static_cast<float>(width_)), width_ - 1);
     const int y = std::min(static_cast<int>(wrap(uv.y) * static_cast<float>(height_)), height_ - 1);
-    return solid_[static_cast<std::size_t>(y) * width_ + x] != 0;
+    return ((solid_[static_cast<std::size_t>(y) * words_ + x / 32] >> (x % 32)) & 1U) != 0;
 }
 
 }  // namespace interreflect

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "data/buffer.h"
 #include "math/vectors.h"
 
 namespace interreflect {
@@ -38,17 +39,24 @@ class Texture {
     /// The mean over all texels.
     vec3 mean() const { return texel(levels_.back(), 0, 0); }
 
-  private:
+    /// One level's place in the array of all texels.
     struct Level {
-        int width, height;
-        std::vector<std::uint32_t> srgb;  // R, G, B, unused: one byte each; empty for float textures
-        std::vector<vec3> linear;
+        std::int32_t width, height, first;
     };
-    static vec3 texel(const Level& level, int x, int y);
-    static Level half_size(const Level& fine);
-    void build_levels();
+    /// The texels of all levels, finest first, each row by row from the bottom; for kernels that read sixteen at a time.
+    std::span<const Level> level_table() const { return levels_; }
+    /// R, G, B, unused: one sRGB byte each; empty for float textures.
+    std::span<const std::uint32_t> srgb_texels() const { return srgb_.span(); }
+
+  private:
+    vec3 texel(const Level& level, int x, int y) const;
+    void fill_level(std::size_t number);
+    void allocate_levels(int width, int height, bool srgb);
+    void fill_levels();
 
     std::vector<Level> levels_;
+    Buffer<std::uint32_t> srgb_;  // huge pages: rows lie pages apart
+    Buffer<vec3> linear_;         // empty for sRGB textures
 };
 
 /// Cut-out: solid where the value is true, looked up at the nearest texel.
@@ -61,8 +69,8 @@ class Mask {
     int height() const { return height_; }
 
   private:
-    int width_, height_;
-    std::vector<std::uint8_t> solid_;
+    int width_, height_, words_;        // words a row
+    std::vector<std::uint32_t> solid_;  // one bit a texel, lowest first
 };
 
 /// sRGB byte to linear value.

@@ -247,12 +247,15 @@ Hit Intersector::Implementation::make_hit(std::uint32_t instance_id, std::uint32
 
 /// Replaces the ray library's numbers by ours.
 void Intersector::Implementation::number_hits(RayPacket& packet, std::uint32_t active) const {
+    const Run* runs = owns_root ? nullptr : groups[0]->runs.data();
     for (int i = 0; i < RayPacket::width; ++i) {
-        const Hit hit = ((active >> i) & 1U) == 0 ? Hit{}
-                                                  : make_hit(packet.instance[i], packet.geometry[i], packet.triangle[i],
-                                                             packet.far[i], packet.u[i], packet.v[i]);
-        packet.triangle[i] = hit.triangle;
-        packet.instance[i] = hit.instance;
+        if (((active >> i) & 1U) == 0 || packet.geometry[i] == RTC_INVALID_GEOMETRY_ID) {
+            packet.triangle[i] = packet.instance[i] = Hit{}.triangle;
+            continue;
+        }
+        packet.instance[i] = owns_root ? instance_of_id[packet.instance[i]] : 0;
+        const Run* of_group = owns_root ? groups[geometry->instances[packet.instance[i]].group]->runs.data() : runs;
+        packet.triangle[i] += of_group[packet.geometry[i]].first;
     }
 }
 

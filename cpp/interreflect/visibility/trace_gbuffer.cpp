@@ -1,17 +1,16 @@
 #include "visibility/trace_gbuffer.h"
 
-#include <array>
 #include <stdexcept>
 #include <string>
 
 #include "data/environment.h"
 #include "math/parallel.h"
+#include "visibility/gbuffer_kernel.h"
 
 namespace interreflect {
 namespace {
 
-constexpr int tile_size = 16, packet_side = 4;
-constexpr int packet_rays = packet_side * packet_side;
+constexpr int tile_size = 32;
 
 GBuffer allocate(const Camera& camera, int width, int height) {
     GBuffer g;
@@ -62,30 +61,24 @@ void store_hit(GBuffer& g, std::size_t pixel, const Scene& scene, const Hit& hit
     g.body[pixel] = scene.geometry->instances[hit.instance].body;
 }
 
-/// One tile: its rays in packets of 4 x 4 pixels, row by row; packets are cut at the picture's border.
-void trace_tile(GBuffer& g, const Scene& scene, const Intersector& intersector, const CameraRays& rays, const Tile& tile) {
-    std::array<Ray, tile_size * tile_size> queries;
-    std::array<Hit, tile_size * tile_size> hits;
-    std::array<std::array<int, 2>, tile_size * tile_size> pixels;
-    std::size_t count = 0;
-    for (int py = tile.y0; py < tile.y1; py += packet_side)
-        for (int px = tile.x0; px < tile.x1; px += packet_side)
-            for (int k = 0; k < packet_rays; ++k) {
-                const int x = px + k % packet_side, y = py + k / packet_side;
-                if (x >= tile.x1 || y >= tile.y1) continue;
-                queries[count].origin = rays.origin;
-                queries[count].direction = rays.direction(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
-                pixels[count++] = {x, y};
-            }
-    intersector.nearest_coherent({queries.data(), count}, {hits.data(), count});
-    for (std::size_t i = 0; i < count; ++i) {
-        const auto [x, y] = pixels[i];
-        const std::size_t pixel = static_cast<std::size_t>(y) * g.width + x;
-        if (hits[i].valid())
-            store_hit(g, pixel, scene, hits[i], rays, static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
-        else
-            store_miss(g, pixel, environment_radiance(scene, queries[i].direction));
+std::vector<KernelMaterial> kernel_materials(const Scene& scene) {
+    std::vector<KernelMaterial> table;
+    for (const Material& material : scene.materials) {
+        KernelMaterial entry;
+        for (int c = 0; c < 3; ++c) entry.albedo[c] = material.albedo[c], entry.specular[c] = material.specular[c];
+        entry.alpha = material.alpha;
+        entry.two_sided = material.two_sided;
+        entry.plain = !material.emits();
+        if (material.albedo_map >= 0) {
+            const Texture& texture = *scene.textures[material.albedo_map];
+            if (texture.srgb_texels().empty()) entry.plain = false;
+            entry.texels = texture.srgb_texels().data();
+            entry.levels = texture.level_table().data();
+            entry.level_count = texture.levels();
+        }
+        table.push_back(entry);
     }
+    return table;
 }
 
 }  // namespace
@@ -118,11 +111,22 @@ Footprint pixel_footprint(const Scene& scene, const Hit& hit, const CameraRays& 
             uv1 * glm::dot(gradient_u, dy) + uv2 * glm::dot(gradient_v, dy)};
 }
 
+void store_gbuffer_pixel(const GBufferJob& job, int x, int y, const Hit& hit) {
+    const std::size_t pixel = static_cast<std::size_t>(y) * job.g.width + x;
+    const float cx = static_cast<float>(x) + 0.5f, cy = static_cast<float>(y) + 0.5f;
+    if (hit.valid())
+        store_hit(job.g, pixel, job.scene, hit, job.rays, cx, cy);
+    else
+        store_miss(job.g, pixel, environment_radiance(job.scene, job.rays.direction(cx, cy)));
+}
+
 GBuffer trace_gbuffer(const Scene& scene, const Intersector& intersector, const Camera& camera, int width, int height) {
     check_view(camera, width, height);
     GBuffer g = allocate(camera, width, height);
     const CameraRays rays(camera, width, height);
-    parallel_tiles(width, height, tile_size, [&](const Tile& tile) { trace_tile(g, scene, intersector, rays, tile); });
+    const float pixel_area = glm::length(rays.right_step) * glm::length(rays.down_step);
+    const GBufferJob job{scene, intersector, rays, g, pixel_area, kernel_materials(scene)};
+    parallel_tiles(width, height, tile_size, [&](const Tile& tile) { trace_gbuffer_tile(job, tile); });
     g.counts.rays = g.pixels();
     return g;
 }

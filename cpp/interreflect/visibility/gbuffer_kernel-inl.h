@@ -1,0 +1,289 @@
+// The packet kernel of the G-buffer. Included once for every vector target.
+#if defined(INTERREFLECT_GBUFFER_KERNEL) == defined(HWY_TARGET_TOGGLE)
+#ifdef INTERREFLECT_GBUFFER_KERNEL
+#undef INTERREFLECT_GBUFFER_KERNEL
+#else
+#define INTERREFLECT_GBUFFER_KERNEL
+#endif
+
+#include "visibility/texture_kernel-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace interreflect {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+inline constexpr int packet = RayPacket::width;
+using Tag = hn::CappedTag<float, packet>;
+using Vector = hn::Vec<Tag>;
+using FloatLanes = float[packet];
+// Four values a lane, side by side, as they come from the vertices.
+using Quads = float[packet][4];
+
+/// One packet on its way from rays to pixels; every array is sixteen lanes.
+struct Shaded {
+    alignas(64) FloatLanes direction_length;  // of the unnormalised ray
+    // Interpolated: position and normal x; normal y, z and texture coordinates. Differences of the second and third corner to the
+    // first in the same order. Largest magnitudes of the corners' coordinates.
+    alignas(64) Quads position_normal, normal_texcoord, edge1, edge1_texcoord, edge2, edge2_texcoord, largest;
+    alignas(64) FloatLanes u, v, area, reflects;
+    alignas(64) FloatLanes albedo[3], specular[3], alpha;
+    alignas(64) float position[3 * packet], geometric[3 * packet], normal[3 * packet], albedo_out[3 * packet],
+        specular_out[3 * packet];
+    alignas(64) FloatLanes offset;
+    std::uint32_t material[packet];
+};
+
+struct Vec3 {
+    Vector x, y, z;
+};
+HWY_INLINE Vector dot(const Vec3& a, const Vec3& b) { return hn::MulAdd(a.x, b.x, hn::MulAdd(a.y, b.y, hn::Mul(a.z, b.z))); }
+HWY_INLINE Vec3 cross(const Vec3& a, const Vec3& b) {
+    return {hn::NegMulAdd(a.z, b.y, hn::Mul(a.y, b.z)), hn::NegMulAdd(a.x, b.z, hn::Mul(a.z, b.x)),
+            hn::NegMulAdd(a.y, b.x, hn::Mul(a.x, b.y))};
+}
+HWY_INLINE Vec3 scaled(const Vec3& a, Vector s) { return {hn::Mul(a.x, s), hn::Mul(a.y, s), hn::Mul(a.z, s)}; }
+/// a where the mask holds, b elsewhere.
+template <class M>
+HWY_INLINE Vec3 choose(M mask, const Vec3& a, const Vec3& b) {
+    return {hn::IfThenElse(mask, a.x, b.x), hn::IfThenElse(mask, a.y, b.y), hn::IfThenElse(mask, a.z, b.z)};
+}
+HWY_INLINE Vec3 negated(const Vec3& a) { return {hn::Neg(a.x), hn::Neg(a.y), hn::Neg(a.z)}; }
+HWY_INLINE void store3(const Vec3& a, float* to) { hn::StoreInterleaved3(a.x, a.y, a.z, Tag(), to); }
+
+/// Primary rays through the centres of the 4 x 4 pixels from (x0, y0) on.
+HWY_INLINE void fill_rays(const CameraRays& rays, int x0, int y0, RayPacket& packet_rays, Shaded& s) {
+    alignas(64) FloatLanes column, row;
+    for (int k = 0; k < packet; ++k) {
+        column[k] = static_cast<float>(k % 4);
+        row[k] = static_cast<float>(k / 4);
+    }
+    const Tag d;
+    for (int k = 0; k < packet; k += static_cast<int>(hn::Lanes(d))) {
+        const Vector x = hn::Add(hn::Load(d, column + k), hn::Set(d, static_cast<float>(x0) + 0.5f));
+        const Vector y = hn::Add(hn::Load(d, row + k), hn::Set(d, static_cast<float>(y0) + 0.5f));
+        const auto along = [&](float corner, float right, float down) HWY_ATTR {
+            return hn::Add(hn::Add(hn::Set(d, corner), hn::Mul(hn::Set(d, right), x)), hn::Mul(hn::Set(d, down), y));
+        };
+        const Vec3 direction{along(rays.corner.x, rays.right_step.x, rays.down_step.x),
+                             along(rays.corner.y, rays.right_step.y, rays.down_step.y),
+                             along(rays.corner.z, rays.right_step.z, rays.down_step.z)};
+        const Vector length = hn::Sqrt(dot(direction, direction));
+        const Vec3 unit = scaled(direction, hn::Div(hn::Set(d, 1.0f), length));
+        hn::Store(length, d, s.direction_length + k);
+        hn::Store(unit.x, d, packet_rays.direction_x + k);
+        hn::Store(unit.y, d, packet_rays.direction_y + k);
+        hn::Store(unit.z, d, packet_rays.direction_z + k);
+        hn::Store(hn::Set(d, rays.origin.x), d, packet_rays.origin_x + k);
+        hn::Store(hn::Set(d, rays.origin.y), d, packet_rays.origin_y + k);
+        hn::Store(hn::Set(d, rays.origin.z), d, packet_rays.origin_z + k);
+        hn::Store(hn::Zero(d), d, packet_rays.near + k);
+        hn::Store(hn::Inf(d), d, packet_rays.far + k);
+    }
+}
+
+/// Everything that is interpolated, lane by lane, eight numbers of a vertex at a time.
+HWY_INLINE void interpolate(const GeometryArrays& arrays, const RayPacket& hits, std::uint32_t plain, Shaded& s) {
+    const hn::CappedTag<float, 4> d;
+    const std::uint32_t* triangles = reinterpret_cast<const std::uint32_t*>(arrays.triangles.data());
+    const float* vertices = reinterpret_cast<const float*>(arrays.vertices.data());
+    // Lanes that are left out borrow the triangle of one that is not.
+    const std::uint32_t stand_in = hits.triangle[hwy::Num0BitsBelowLS1Bit_Nonzero32(plain)];
+    for (int k = 0; k < packet; ++k) {
+        const bool taken = ((plain >> k) & 1U) != 0;
+        const std::size_t triangle = taken ? hits.triangle[k] : stand_in;
+        const auto u = hn::Set(d, taken ? hits.u[k] : 0.0f), v = hn::Set(d, taken ? hits.v[k] : 0.0f);
+        const auto w = hn::Sub(hn::Sub(hn::Set(d, 1.0f), u), v);
+        const std::uint32_t* corners = triangles + 3 * triangle;
+        const float *a = vertices + 8 * std::size_t{corners[0]}, *b = vertices + 8 * std::size_t{corners[1]},
+                    *c = vertices + 8 * std::size_t{corners[2]};
+        const auto a0 = hn::Load(d, a), b0 = hn::Load(d, b), c0 = hn::Load(d, c);
+        const auto a1 = hn::Load(d, a + 4), b1 = hn::Load(d, b + 4), c1 = hn::Load(d, c + 4);
+        hn::Store(hn::Add(hn::Add(hn::Mul(a0, w), hn::Mul(b0, u)), hn::Mul(c0, v)), d, s.position_normal[k]);
+        hn::Store(hn::Add(hn::Add(hn::Mul(a1, w), hn::Mul(b1, u)), hn::Mul(c1, v)), d, s.normal_texcoord[k]);
+        hn::Store(hn::Sub(b0, a0), d, s.edge1[k]);
+        hn::Store(hn::Sub(b1, a1), d, s.edge1_texcoord[k]);
+        hn::Store(hn::Sub(c0, a0), d, s.edge2[k]);
+        hn::Store(hn::Sub(c1, a1), d, s.edge2_texcoord[k]);
+        hn::Store(hn::Max(hn::Abs(a0), hn::Max(hn::Abs(b0), hn::Abs(c0))), d, s.largest[k]);
+        s.material[k] = arrays.materials[triangle];
+    }
+}
+
+/// Reflectances before textures, and whether the side that is seen reflects at all.
+HWY_INLINE void look_up_materials(const GBufferJob& job, Shaded& s) {
+    for (int k = 0; k < packet; ++k) {
+        const KernelMaterial& m = job.materials[s.material[k]];
+        for (int c = 0; c < 3; ++c) s.albedo[c][k] = m.albedo[c], s.specular[c][k] = m.specular[c];
+        s.alpha[k] = m.alpha;
+        s.reflects[k] = m.two_sided ? 1.0f : 0.0f;
+    }
+}
+
+/// Normals, ray offsets, and the footprint's area in texture coordinates.
+HWY_INLINE void shade_geometry(const RayPacket& hits, float pixel_area, Shaded& s) {
+    const Tag d;
+    for (int k = 0; k < packet; k += static_cast<int>(hn::Lanes(d))) {
+        Vec3 position, shading, e1, e2, largest;
+        Vector u, v, unused, du1, dv1, du2, dv2;
+        hn::LoadInterleaved4(d, s.position_normal[k], position.x, position.y, position.z, shading.x);
+        hn::LoadInterleaved4(d, s.normal_texcoord[k], shading.y, shading.z, u, v);
+        hn::LoadInterleaved4(d, s.edge1[k], e1.x, e1.y, e1.z, unused);
+        hn::LoadInterleaved4(d, s.edge1_texcoord[k], unused, unused, du1, dv1);
+        hn::LoadInterleaved4(d, s.edge2[k], e2.x, e2.y, e2.z, unused);
+        hn::LoadInterleaved4(d, s.edge2_texcoord[k], unused, unused, du2, dv2);
+        hn::LoadInterleaved4(d, s.largest[k], largest.x, largest.y, largest.z, unused);
+        const Vector zero = hn::Zero(d), one = hn::Set(d, 1.0f);
+        const Vec3 direction{hn::Load(d, hits.direction_x + k), hn::Load(d, hits.direction_y + k),
+                             hn::Load(d, hits.direction_z + k)};
+        const Vec3 plane = cross(e1, e2);
+        const Vector facing = dot(plane, direction);
+        const auto front = hn::Lt(facing, zero);
+        const Vec3 unit = scaled(plane, hn::Div(one, hn::Sqrt(dot(plane, plane))));
+        const Vec3 geometric = choose(front, unit, negated(unit));
+
+        // visible_normal of surface.h
+        const Vector squared = dot(shading, shading);
+        const auto smooth = hn::Gt(squared, zero);
+        const Vector scale = hn::Div(one, hn::Sqrt(hn::IfThenElse(smooth, squared, one)));
+        Vec3 normal = choose(smooth, scaled(shading, scale), geometric);
+        normal = choose(hn::Lt(dot(normal, geometric), zero), negated(normal), normal);
+        const Vector cosine = hn::Neg(dot(normal, direction));
+        const auto hidden = hn::Le(cosine, zero);
+        if (!hn::AllFalse(d, hidden)) {
+            const Vector least = hn::Max(hn::Neg(dot(geometric, direction)), hn::Set(d, 1e-6f));
+            const Vector share = hn::Sub(hn::Mul(hn::Set(d, 0x1p-6f), least), cosine);
+            const Vec3 bent{hn::MulAdd(normal.x, least, hn::Mul(geometric.x, share)),
+                            hn::MulAdd(normal.y, least, hn::Mul(geometric.y, share)),
+                            hn::MulAdd(normal.z, least, hn::Mul(geometric.z, share))};
+            normal = choose(hidden, scaled(bent, hn::Div(one, hn::Sqrt(dot(bent, bent)))), normal);
+        }
+
+        // Area of the pixel's footprint on the plane is pixel_area depth^2 / (length^3 cosine); the triangle's areas in texture
+        // coordinates and in space turn it into texture coordinates.
+        const Vector depth = hn::Load(d, hits.far + k), length = hn::Load(d, s.direction_length + k);
+        const Vector texture = hn::Abs(hn::Sub(hn::Mul(du1, dv2), hn::Mul(du2, dv1)));
+        const Vector area = hn::Div(hn::Mul(hn::Mul(hn::Mul(depth, depth), texture), hn::Set(d, pixel_area)),
+                                    hn::Mul(hn::Mul(hn::Mul(length, length), length), hn::Abs(facing)));
+        hn::Store(u, d, s.u + k);
+        hn::Store(v, d, s.v + k);
+        hn::Store(area, d, s.area + k);
+        hn::Store(hn::Mul(hn::Set(d, 0x1p-18f), hn::Max(largest.x, hn::Max(largest.y, largest.z))), d, s.offset + k);
+        hn::Store(hn::IfThenElse(front, one, hn::Load(d, s.reflects + k)), d, s.reflects + k);
+        store3(position, s.position + 3 * k);
+        store3(geometric, s.geometric + 3 * k);
+        store3(normal, s.normal + 3 * k);
+    }
+}
+
+/// Multiplies the albedo of the lanes that have `material` by its texture.
+HWY_INLINE void apply_texture(const KernelMaterial& material, std::uint32_t number, Shaded& s) {
+    const Tag d;
+    const hn::RebindToUnsigned<Tag> du;
+    for (int k = 0; k < packet; k += static_cast<int>(hn::Lanes(d))) {
+        const auto mine = hn::RebindMask(d, hn::Eq(hn::LoadU(du, s.material + k), hn::Set(du, number)));
+        if (hn::AllFalse(d, mine)) continue;
+        // Other lanes repeat a look-up near the origin of the texture; what they find is not kept.
+        const Rgb<Vector> texel =
+            filtered_lanes(d, material, hn::IfThenElseZero(mine, hn::Load(d, s.u + k)),
+                           hn::IfThenElseZero(mine, hn::Load(d, s.v + k)), hn::IfThenElseZero(mine, hn::Load(d, s.area + k)));
+        const Vector one = hn::Set(d, 1.0f);
+        hn::Store(hn::Mul(hn::Load(d, s.albedo[0] + k), hn::IfThenElse(mine, texel.r, one)), d, s.albedo[0] + k);
+        hn::Store(hn::Mul(hn::Load(d, s.albedo[1] + k), hn::IfThenElse(mine, texel.g, one)), d, s.albedo[1] + k);
+        hn::Store(hn::Mul(hn::Load(d, s.albedo[2] + k), hn::IfThenElse(mine, texel.b, one)), d, s.albedo[2] + k);
+    }
+}
+
+HWY_INLINE void shade_materials(const GBufferJob& job, std::uint32_t plain, Shaded& s) {
+    std::uint32_t left = plain;
+    while (left != 0) {
+        const std::uint32_t number = s.material[hwy::Num0BitsBelowLS1Bit_Nonzero32(left)];
+        if (job.materials[number].texels != nullptr) apply_texture(job.materials[number], number, s);
+        for (int k = 0; k < packet; ++k) left &= ~(static_cast<std::uint32_t>(s.material[k] == number) << k);
+    }
+    const Tag d;
+    for (int k = 0; k < packet; k += static_cast<int>(hn::Lanes(d))) {
+        const Vector reflects = hn::Load(d, s.reflects + k);
+        store3(scaled({hn::Load(d, s.albedo[0] + k), hn::Load(d, s.albedo[1] + k), hn::Load(d, s.albedo[2] + k)}, reflects),
+               s.albedo_out + 3 * k);
+        store3(scaled({hn::Load(d, s.specular[0] + k), hn::Load(d, s.specular[1] + k), hn::Load(d, s.specular[2] + k)}, reflects),
+               s.specular_out + 3 * k);
+    }
+}
+
+/// Four pixels of one row, `values` numbers each, to their place; fewer at the picture's right border.
+template <int values>
+HWY_INLINE void store_row(const void* from, int lane, int count, void* to, std::size_t pixel) {
+    const char* source = static_cast<const char*>(from) + lane * values * 4;
+    char* target = static_cast<char*>(to) + pixel * values * 4;
+    if (count == 4)
+        std::memcpy(target, source, 4 * values * 4);
+    else
+        std::memcpy(target, source, static_cast<std::size_t>(count) * values * 4);
+}
+
+HWY_INLINE void store_packet(const GBufferJob& job, const Tile& tile, int x0, int y0, const RayPacket& hits, const Shaded& s) {
+    static const float zeros[3 * packet] = {};
+    static const std::uint32_t body[packet] = {};
+    GBuffer& g = job.g;
+    const int columns = tile.x1 - x0 < 4 ? tile.x1 - x0 : 4, rows = tile.y1 - y0 < 4 ? tile.y1 - y0 : 4;
+    for (int row = 0; row < rows; ++row) {
+        const std::size_t pixel = static_cast<std::size_t>(y0 + row) * g.width + x0;
+        const int lane = 4 * row;
+        store_row<3>(s.position, lane, columns, g.position.data(), pixel);
+        store_row<3>(s.geometric, lane, columns, g.geometric_normal.data(), pixel);
+        store_row<3>(s.normal, lane, columns, g.normal.data(), pixel);
+        store_row<3>(s.albedo_out, lane, columns, g.albedo.data(), pixel);
+        store_row<3>(s.specular_out, lane, columns, g.specular.data(), pixel);
+        store_row<3>(zeros, lane, columns, g.emission.data(), pixel);
+        store_row<1>(s.alpha, lane, columns, g.alpha.data(), pixel);
+        store_row<1>(hits.far, lane, columns, g.depth.data(), pixel);
+        store_row<1>(s.offset, lane, columns, g.offset.data(), pixel);
+        store_row<1>(hits.triangle, lane, columns, g.triangle.data(), pixel);
+        store_row<1>(hits.instance, lane, columns, g.instance.data(), pixel);
+        store_row<1>(body, lane, columns, g.body.data(), pixel);
+    }
+}
+
+/// Lanes that the vectors may shade: a hit on what stands in world space, with a plain material.
+HWY_INLINE std::uint32_t plain_lanes(const GBufferJob& job, const RayPacket& hits, std::uint32_t active) {
+    const Geometry& geometry = *job.scene.geometry;
+    std::uint32_t plain = 0;
+    for (int k = 0; k < packet; ++k) {
+        if (((active >> k) & 1U) == 0 || !hits.met(k) || !geometry.instances[hits.instance[k]].identity) continue;
+        plain |= static_cast<std::uint32_t>(job.materials[geometry.arrays->materials[hits.triangle[k]]].plain) << k;
+    }
+    return plain;
+}
+
+HWY_INLINE void trace_packet(const GBufferJob& job, const Tile& tile, int x0, int y0) {
+    RayPacket rays;
+    Shaded s;
+    fill_rays(job.rays, x0, y0, rays, s);
+    std::uint32_t active = 0;
+    for (int k = 0; k < packet; ++k) active |= static_cast<std::uint32_t>(x0 + k % 4 < tile.x1 && y0 + k / 4 < tile.y1) << k;
+    job.intersector.nearest(rays, active);
+    const std::uint32_t plain = plain_lanes(job, rays, active);
+    if (plain != 0) {
+        interpolate(*job.scene.geometry->arrays, rays, plain, s);
+        look_up_materials(job, s);
+        shade_geometry(rays, job.pixel_area, s);
+        shade_materials(job, plain, s);
+        store_packet(job, tile, x0, y0, rays, s);
+    }
+    for (std::uint32_t left = active & ~plain; left != 0; left &= left - 1) {
+        const int k = static_cast<int>(hwy::Num0BitsBelowLS1Bit_Nonzero32(left));
+        store_gbuffer_pixel(job, x0 + k % 4, y0 + k / 4, rays.hit(k));
+    }
+}
+
+void trace_tile(const GBufferJob& job, const Tile& tile) {
+    for (int y = tile.y0; y < tile.y1; y += 4)
+        for (int x = tile.x0; x < tile.x1; x += 4) trace_packet(job, tile, x, y);
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace interreflect
+HWY_AFTER_NAMESPACE();
+
+#endif
