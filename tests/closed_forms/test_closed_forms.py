@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from __future__ import annotations
+
 import numpy as np
 import pytest
 
@@ -76,3 +78,13 @@ def test_a_measuring_camera_sees_its_square_and_nothing_else(row):
 
 def test_only_spherical_harmonics_are_not_light():
     assert [row for row in range(1, 18) if ir.scenes.closed_form(row).transport != "light"] == [16]
+
+
+@pytest.mark.parametrize(("row", "knobs"), [(4, {}), (4, {"cap": 60}), (3, {"part": "indirect"})])
+def test_rays_through_voxels_gather_one_bounce_as_the_closed_form_says(row, knobs):
+    case = ir.scenes.closed_form(row, **knobs)
+    method = ir.methods.VoxelConeTracing(march=ir.TracedRays(samples=16), share=ir.EveryPixel())
+    values = np.array([case.measure(method.render(case.scene, camera=case.camera, size=(64, 64), seed=seed)) for seed in range(6)])
+    noise = values.std(ddof=1) / np.sqrt(len(values))
+    # A voxel is 1/64 of the radius: light is stored up to half of that beside where it falls, 1/128 of its distance.
+    assert abs(values.mean() - case.value) < case.value / 128 + 4 * noise, (values, case.value)

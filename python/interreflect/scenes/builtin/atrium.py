@@ -36,7 +36,7 @@ def atrium(detail: int = 60_000) -> Scene:
     parts = _fitted((1 - CLOTH_SHARE) * target)
     materials = _materials()
     meshes = [*_built(parts, materials), *_hangings(target - sum(part.triangles for part in parts), materials)]
-    sun = DirectionalLight(direction=(-0.42, -1, -0.3), irradiance=(21, 18.5, 14.5))
+    sun = DirectionalLight(direction=(-0.42, -1, -0.3), irradiance=(17, 15, 11.8))
     sky = EnvironmentLight(radiance=(0.95, 1.2, 1.6))
     cameras = {
         "court": Camera(position=(7.1, 1.75, 2.0), target=(-3.0, 2.75, -1.35), fov_x=72),
@@ -115,7 +115,7 @@ def _materials() -> dict[str, Material]:
         "ashlar": masonry(n, 6, 3, 0.008, stone, joint, 0.1, seed=1),
         "bricks": masonry(n, 16, 8, 0.009, (0.52, 0.31, 0.21), (0.56, 0.5, 0.42), 0.18, seed=2),
         "plaster": plain(n, 3, (0.68, 0.61, 0.5), 0.1, seed=15),
-        "flagstones": masonry(n, 4, 3, 0.01, (0.5, 0.45, 0.38), (0.2, 0.18, 0.15), 0.14, seed=3),
+        "flagstones": masonry(n, 4, 3, 0.01, (0.44, 0.4, 0.34), (0.2, 0.18, 0.15), 0.14, seed=3),
         "tiles": chequers(n, 8, (0.6, 0.54, 0.44), (0.3, 0.1, 0.06), 0.006, seed=4),
         "marble": plain(n, 4, (0.64, 0.59, 0.52), 0.16, seed=5),
         "roof": masonry(n, 8, 8, 0.02, (0.46, 0.19, 0.1), (0.16, 0.07, 0.05), 0.2, seed=6),
