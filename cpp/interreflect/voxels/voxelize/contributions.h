@@ -86,17 +86,23 @@ class ContributionSink {
 
     void begin(const VoxelTriangle& triangle) { triangle_ = &triangle; }
     /// A sample of the current triangle at `position` voxels that stands for `area`; dropped outside the domain.
-    void add(const vec3& position, float area, bool solid, const vec3& albedo, const vec3& emitted) {
+    [[gnu::always_inline]] void add(const vec3& position, float area, bool solid, const vec3& albedo, const vec3& emitted) {
         const vec3 floor = glm::floor(position);
         add(ivec3(floor), position - floor - 0.5f, area, solid, albedo, emitted);
     }
+    /// The only sample of the current triangle.
+    [[gnu::always_inline]] void add_only(const vec3& position, bool solid, const vec3& albedo, const vec3& emitted) {
+        const vec3 floor = glm::floor(position);
+        const ivec3 at(floor);
+        if (outside(at)) return;
+        ++samples;
+        const float area = triangle_->area, share = solid ? area : 0.0f;
+        keep(domain_.cell(at), share, area, albedo * share, (position - floor - 0.5f) * share, emitted * share);
+    }
     /// The same with the cell given, and the position from its centre.
-    void add(const ivec3& at, const vec3& local, float area, bool solid, const vec3& albedo, const vec3& emitted) {
-        const ivec3& n = domain_.cells;
-        if (static_cast<unsigned>(at.x) >= static_cast<unsigned>(n.x) ||
-            static_cast<unsigned>(at.y) >= static_cast<unsigned>(n.y) ||
-            static_cast<unsigned>(at.z) >= static_cast<unsigned>(n.z))
-            return;
+    [[gnu::always_inline]] void add(const ivec3& at, const vec3& local, float area, bool solid, const vec3& albedo,
+                                    const vec3& emitted) {
+        if (outside(at)) return;
         ++samples;
         const std::uint32_t cell = domain_.cell(at);
         const unsigned number = static_cast<unsigned>((at.x & 1) | (at.y & 1) << 1 | (at.z & 1) << 2);
@@ -129,11 +135,19 @@ class ContributionSink {
         float area = 0, total = 0;
         vec3 albedo{0}, position{0}, emission{0};
     };
-    void flush(const Slot& slot) {
-        surface.push_back({slot.cell, slot.area, slot.total, slot.albedo, slot.position, triangle_->normal, triangle_->offset,
+    bool outside(const ivec3& at) const {
+        const ivec3& n = domain_.cells;
+        return static_cast<unsigned>(at.x) >= static_cast<unsigned>(n.x) ||
+               static_cast<unsigned>(at.y) >= static_cast<unsigned>(n.y) ||
+               static_cast<unsigned>(at.z) >= static_cast<unsigned>(n.z);
+    }
+    void flush(const Slot& slot) { keep(slot.cell, slot.area, slot.total, slot.albedo, slot.position, slot.emission); }
+    [[gnu::always_inline]] void keep(std::uint32_t cell, float area, float total, const vec3& albedo, const vec3& position,
+                                     const vec3& emitted) {
+        surface.push_back({cell, area, total, albedo, position, triangle_->normal, triangle_->offset,
                            triangle_->material->two_sided ? 1U : 0U});
-        if (slot.area > 0.0f) marks_.mark(slot.cell);
-        if (max_component(slot.emission) > 0.0f) emission.push_back({slot.cell, slot.emission});
+        if (area > 0.0f) marks_.mark(cell);
+        if (emitted.x > 0.0f || emitted.y > 0.0f || emitted.z > 0.0f) emission.push_back({cell, emitted});
     }
 
     const Domain& domain_;

@@ -44,6 +44,13 @@ void sample_triangle(const VoxelTriangle& t, float spacing, ContributionSink& si
     const int rows = std::max(1, static_cast<int>(std::ceil(height / spacing)));
     const bool uniform = t.uniform();
     const Appearance look(t, std::min(t.area, spacing * spacing));
+    if (rows == 1 && 0.5f * longest <= spacing) {
+        const vec2 uv = (t0 + t1) * 0.25f + t2 * 0.5f;
+        const bool solid = t.mask == nullptr || t.mask->solid(uv);
+        sink.add_only((p0 + p1) * 0.25f + p2 * 0.5f, solid, uniform ? t.material->albedo : look.albedo(uv),
+                      uniform ? t.material->emission : look.emission(uv));
+        return;
+    }
     for (int row = 0; row < rows; ++row) {
         const float v = (static_cast<float>(row) + 0.5f) / static_cast<float>(rows), rest = 1.0f - v;
         const int count = std::max(1, static_cast<int>(std::ceil(longest * rest / spacing)));
