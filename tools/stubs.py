@@ -57,6 +57,18 @@ class Typed(ast.NodeTransformer):
         text = self.ARGUMENTS.get(node.id)
         return ast.parse(text, mode="eval").body if text else node
 
+    def visit_FunctionDef(self, node: ast.FunctionDef) -> ast.AST:
+        """A pointer that may be null shows as a default of None without the type saying so."""
+        self.generic_visit(node)
+        arguments = node.args.args[len(node.args.args) - len(node.args.defaults) :]
+        for argument, default in zip(arguments, node.args.defaults, strict=True):
+            if argument.annotation and ast.unparse(default) == "None" and "None" not in ast.unparse(argument.annotation):
+                argument.annotation = ast.parse(f"{ast.unparse(argument.annotation)} | None", mode="eval").body
+        return node
+
+    def visit_AnnAssign(self, node: ast.AnnAssign) -> ast.AST | None:
+        return None if ast.unparse(node.target) == "__hash__" else node
+
     def visit_Attribute(self, node: ast.Attribute) -> ast.AST:
         text = "numpy.typing.NDArray[typing.Any]" if ast.unparse(node) == "numpy.ndarray" else None
         return ast.parse(text, mode="eval").body if text else node

@@ -37,7 +37,6 @@ PYBIND11_MODULE(_core, m) {
     bind_visibility(m);
     bind_direct(m);
     bind_reference(m);
-    bind_march(m);
-    bind_scene(m);
     bind_voxels(m);
+    bind_march(m);
 }

@@ -82,6 +82,7 @@ void bind_visibility(py::module_& m) {
             },
             py::arg("geometry"), "The same hierarchies with the instances where `geometry` has them.")
         .def_property_readonly("bytes", &Intersector::bytes);
+    bind_scene(m);
     bind_gbuffer(m);
 }
 

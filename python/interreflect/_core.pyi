@@ -45,7 +45,7 @@ class DirectionalLight:
         ...
 class Environment:
 
-    def __init__(self, radiance: typing.Annotated[collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], 'FixedSize(3)'], image: typing.Any=None, rotation: typing.Any=None) -> None:
+    def __init__(self, radiance: typing.Annotated[collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], 'FixedSize(3)'], image: typing.Any | None=None, rotation: typing.Any | None=None) -> None:
         ...
 class Texture:
 
@@ -105,6 +105,10 @@ class Intersector:
 
     @property
     def bytes(self) -> int:
+        ...
+class Scene:
+
+    def __init__(self, geometry: Geometry, intersector: Intersector, materials: collections.abc.Sequence[Material], textures: collections.abc.Sequence[Texture], masks: collections.abc.Sequence[Mask], lights: list[typing.Any], environment: Environment | None=None) -> None:
         ...
 class GBuffer:
     """
@@ -354,248 +358,10 @@ class PathTraced:
         """
         Paths that every pixel got.
         """
-class GatheredLight:
-    """
-    What arrives at the pixels over the hemisphere about the shading normal; zero where nothing was hit.
-    """
-
-    @property
-    def bytes(self) -> int:
-        ...
-
-    @property
-    def counts(self) -> Counts:
-        ...
-
-    @property
-    def irradiance(self) -> numpy.typing.NDArray[numpy.float32]:
-        """
-        (height, width, 3): of light that surfaces reflect, W/m^2.
-        """
-
-    @property
-    def occlusion(self) -> numpy.typing.NDArray[numpy.float32]:
-        """
-        (height, width): cosine-weighted share of the hemisphere that is closed.
-        """
-
-    @property
-    def sky(self) -> numpy.typing.NDArray[numpy.float32]:
-        """
-        (height, width, 3): of the environment through the openings, W/m^2.
-        """
-class GlossyLight:
-    """
-    What the pixels' glossy lobe reflects towards the camera.
-    """
-
-    @property
-    def bytes(self) -> int:
-        ...
-
-    @property
-    def counts(self) -> Counts:
-        ...
-
-    @property
-    def radiance(self) -> numpy.typing.NDArray[numpy.float32]:
-        """
-        (height, width, 3): of light that surfaces reflected, W/(m^2 sr).
-        """
-
-    @property
-    def sky(self) -> numpy.typing.NDArray[numpy.float32]:
-        """
-        (height, width, 3): of the environment, W/(m^2 sr).
-        """
-class Interleaved:
-    """Each pixel of a block does its part of the work; the parts are merged over neighbours on the same surface."""
-    description: ClassVar[dict[str, Any]]
-    stages: ClassVar[tuple[str, ...]]
-
-    def __init__(self, *, width: int=..., height: int=..., normal_angle: float=..., plane_distance: float=...) -> None:
-        ...
-
-    def replace(self, *, width: int=..., height: int=..., normal_angle: float=..., plane_distance: float=...) -> Interleaved:
-        ...
-
-    def asdict(self) -> dict[str, Any]:
-        ...
-
-    def __hash__(self) -> int:
-        ...
-
-    def __eq__(self, other: object) -> bool:
-        ...
-
-    @property
-    def width(self) -> int:
-        ...
-
-    @property
-    def height(self) -> int:
-        ...
-
-    @property
-    def normal_angle(self) -> float:
-        ...
-
-    @property
-    def plane_distance(self) -> float:
-        ...
-class EveryPixel:
-    """Every pixel does all of its work itself."""
-    description: ClassVar[dict[str, Any]]
-    stages: ClassVar[tuple[str, ...]]
-
-    def __init__(self) -> None:
-        ...
-
-    def replace(self) -> EveryPixel:
-        ...
-
-    def asdict(self) -> dict[str, Any]:
-        ...
-
-    def __hash__(self) -> int:
-        ...
-
-    def __eq__(self, other: object) -> bool:
-        ...
-class DiffuseCones:
-    """Cones over the hemisphere, marched front to back through ever coarser levels of the pyramid."""
-    description: ClassVar[dict[str, Any]]
-    stages: ClassVar[tuple[str, ...]]
-
-    def __init__(self, *, set: str=..., cones: int=..., half_angle: float=..., step: float=..., first_diameter: float=..., normal_offset: float=..., level_bias: float=..., density: float=..., cut_off: float=...) -> None:
-        ...
-
-    def replace(self, *, set: str=..., cones: int=..., half_angle: float=..., step: float=..., first_diameter: float=..., normal_offset: float=..., level_bias: float=..., density: float=..., cut_off: float=...) -> DiffuseCones:
-        ...
-
-    def asdict(self) -> dict[str, Any]:
-        ...
-
-    def __hash__(self) -> int:
-        ...
-
-    def __eq__(self, other: object) -> bool:
-        ...
-
-    @property
-    def set(self) -> str:
-        ...
-
-    @property
-    def cones(self) -> int:
-        ...
-
-    @property
-    def half_angle(self) -> float:
-        ...
-
-    @property
-    def step(self) -> float:
-        ...
-
-    @property
-    def first_diameter(self) -> float:
-        ...
-
-    @property
-    def normal_offset(self) -> float:
-        ...
-
-    @property
-    def level_bias(self) -> float:
-        ...
-
-    @property
-    def density(self) -> float:
-        ...
-
-    @property
-    def cut_off(self) -> float:
-        ...
-class TracedRays:
-    """Rays against the triangles from each pixel, radiance read from the finest voxel at the hit."""
-    description: ClassVar[dict[str, Any]]
-    stages: ClassVar[tuple[str, ...]]
-
-    def __init__(self, *, samples: int=..., tile: int=...) -> None:
-        ...
-
-    def replace(self, *, samples: int=..., tile: int=...) -> TracedRays:
-        ...
-
-    def asdict(self) -> dict[str, Any]:
-        ...
-
-    def __hash__(self) -> int:
-        ...
-
-    def __eq__(self, other: object) -> bool:
-        ...
-
-    @property
-    def samples(self) -> int:
-        ...
-
-    @property
-    def tile(self) -> int:
-        ...
-class GlossyCone:
-    """One cone about the lobe's mean direction, as wide as the lobe, weighted by the lobe's directional albedo."""
-    description: ClassVar[dict[str, Any]]
-    stages: ClassVar[tuple[str, ...]]
-
-    def __init__(self, *, step: float=..., first_diameter: float=..., normal_offset: float=..., level_bias: float=..., density: float=..., cut_off: float=...) -> None:
-        ...
-
-    def replace(self, *, step: float=..., first_diameter: float=..., normal_offset: float=..., level_bias: float=..., density: float=..., cut_off: float=...) -> GlossyCone:
-        ...
-
-    def asdict(self) -> dict[str, Any]:
-        ...
-
-    def __hash__(self) -> int:
-        ...
-
-    def __eq__(self, other: object) -> bool:
-        ...
-
-    @property
-    def step(self) -> float:
-        ...
-
-    @property
-    def first_diameter(self) -> float:
-        ...
-
-    @property
-    def normal_offset(self) -> float:
-        ...
-
-    @property
-    def level_bias(self) -> float:
-        ...
-
-    @property
-    def density(self) -> float:
-        ...
-
-    @property
-    def cut_off(self) -> float:
-        ...
-class Scene:
-
-    def __init__(self, geometry: Geometry, intersector: Intersector, materials: collections.abc.Sequence[Material], textures: collections.abc.Sequence[Texture], masks: collections.abc.Sequence[Mask], lights: list[typing.Any], environment: Environment | None=None) -> None:
-        ...
 class Domain:
     """
     A box of cubic voxels in world space.
     """
-    __hash__: typing.ClassVar[None] = None
 
     def __eq__(self, arg0: typing.Any) -> bool:
         ...
@@ -918,15 +684,248 @@ class VolumeCoverage:
 
     def __eq__(self, other: object) -> bool:
         ...
+class GatheredLight:
+    """
+    What arrives at the pixels over the hemisphere about the shading normal; zero where nothing was hit.
+    """
+
+    @property
+    def bytes(self) -> int:
+        ...
+
+    @property
+    def counts(self) -> Counts:
+        ...
+
+    @property
+    def irradiance(self) -> numpy.typing.NDArray[numpy.float32]:
+        """
+        (height, width, 3): of light that surfaces reflect, W/m^2.
+        """
+
+    @property
+    def occlusion(self) -> numpy.typing.NDArray[numpy.float32]:
+        """
+        (height, width): cosine-weighted share of the hemisphere that is closed.
+        """
+
+    @property
+    def sky(self) -> numpy.typing.NDArray[numpy.float32]:
+        """
+        (height, width, 3): of the environment through the openings, W/m^2.
+        """
+class GlossyLight:
+    """
+    What the pixels' glossy lobe reflects towards the camera.
+    """
+
+    @property
+    def bytes(self) -> int:
+        ...
+
+    @property
+    def counts(self) -> Counts:
+        ...
+
+    @property
+    def radiance(self) -> numpy.typing.NDArray[numpy.float32]:
+        """
+        (height, width, 3): of light that surfaces reflected, W/(m^2 sr).
+        """
+
+    @property
+    def sky(self) -> numpy.typing.NDArray[numpy.float32]:
+        """
+        (height, width, 3): of the environment, W/(m^2 sr).
+        """
+class Interleaved:
+    """Each pixel of a block does its part of the work; the parts are merged over neighbours on the same surface."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self, *, width: int=..., height: int=..., normal_angle: float=..., plane_distance: float=...) -> None:
+        ...
+
+    def replace(self, *, width: int=..., height: int=..., normal_angle: float=..., plane_distance: float=...) -> Interleaved:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+
+    @property
+    def width(self) -> int:
+        ...
+
+    @property
+    def height(self) -> int:
+        ...
+
+    @property
+    def normal_angle(self) -> float:
+        ...
+
+    @property
+    def plane_distance(self) -> float:
+        ...
+class EveryPixel:
+    """Every pixel does all of its work itself."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self) -> None:
+        ...
+
+    def replace(self) -> EveryPixel:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+class DiffuseCones:
+    """Cones over the hemisphere, marched front to back through ever coarser levels of the pyramid."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self, *, set: str=..., cones: int=..., half_angle: float=..., step: float=..., first_diameter: float=..., normal_offset: float=..., level_bias: float=..., density: float=..., cut_off: float=...) -> None:
+        ...
+
+    def replace(self, *, set: str=..., cones: int=..., half_angle: float=..., step: float=..., first_diameter: float=..., normal_offset: float=..., level_bias: float=..., density: float=..., cut_off: float=...) -> DiffuseCones:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+
+    @property
+    def set(self) -> str:
+        ...
+
+    @property
+    def cones(self) -> int:
+        ...
+
+    @property
+    def half_angle(self) -> float:
+        ...
+
+    @property
+    def step(self) -> float:
+        ...
+
+    @property
+    def first_diameter(self) -> float:
+        ...
+
+    @property
+    def normal_offset(self) -> float:
+        ...
+
+    @property
+    def level_bias(self) -> float:
+        ...
+
+    @property
+    def density(self) -> float:
+        ...
+
+    @property
+    def cut_off(self) -> float:
+        ...
+class TracedRays:
+    """Rays against the triangles from each pixel, radiance read from the finest voxel at the hit."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self, *, samples: int=..., tile: int=...) -> None:
+        ...
+
+    def replace(self, *, samples: int=..., tile: int=...) -> TracedRays:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+
+    @property
+    def samples(self) -> int:
+        ...
+
+    @property
+    def tile(self) -> int:
+        ...
+class GlossyCone:
+    """One cone about the lobe's mean direction, as wide as the lobe, weighted by the lobe's directional albedo."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self, *, step: float=..., first_diameter: float=..., normal_offset: float=..., level_bias: float=..., density: float=..., cut_off: float=...) -> None:
+        ...
+
+    def replace(self, *, step: float=..., first_diameter: float=..., normal_offset: float=..., level_bias: float=..., density: float=..., cut_off: float=...) -> GlossyCone:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+
+    @property
+    def step(self) -> float:
+        ...
+
+    @property
+    def first_diameter(self) -> float:
+        ...
+
+    @property
+    def normal_offset(self) -> float:
+        ...
+
+    @property
+    def level_bias(self) -> float:
+        ...
+
+    @property
+    def density(self) -> float:
+        ...
+
+    @property
+    def cut_off(self) -> float:
+        ...
 def _rebuild(arg0: typing.Any, arg1: dict[str, typing.Any]) -> typing.Any:
     """
     Makes a technique again from its knobs (pickle).
     """
-def cone_sky(gbuffer: GBuffer, gathered: typing.Any, glossy: typing.Any=None) -> DirectLight:
+def cone_sky(gbuffer: GBuffer, gathered: typing.Any, glossy: typing.Any | None=None) -> DirectLight:
     """
     What the march's cones left open: albedo / pi * gathered.sky + glossy.sky.
     """
-def glossy(technique: TracedRays | GlossyCone, pyramid: ..., gbuffer: GBuffer, scene: ..., share: EveryPixel | Interleaved, seed: typing.SupportsInt | typing.SupportsIndex) -> GlossyLight:
+def glossy(technique: TracedRays | GlossyCone, pyramid: Pyramid, gbuffer: GBuffer, scene: Scene, share: EveryPixel | Interleaved, seed: typing.SupportsInt | typing.SupportsIndex) -> GlossyLight:
     """
     Light that the glossy lobe reflects. A lobe follows its own pixel's view and material: its work is not shared.
     """
@@ -934,15 +933,15 @@ def light_voxels(technique: TracedLighting, scene: Scene, voxels: VoxelGrid, see
     """
     The radiance that each voxel reflects.
     """
-def march(technique: TracedRays | DiffuseCones, pyramid: ..., gbuffer: GBuffer, scene: ..., share: EveryPixel | Interleaved, seed: typing.SupportsInt | typing.SupportsIndex) -> GatheredLight:
+def march(technique: TracedRays | DiffuseCones, pyramid: Pyramid, gbuffer: GBuffer, scene: Scene, share: EveryPixel | Interleaved, seed: typing.SupportsInt | typing.SupportsIndex) -> GatheredLight:
     """
     Light that arrives over the hemisphere at the pixels.
     """
-def path_trace(scene: ..., camera: Camera, width: typing.SupportsInt | typing.SupportsIndex, height: typing.SupportsInt | typing.SupportsIndex, *, samples: typing.SupportsInt | typing.SupportsIndex=1, milliseconds: typing.SupportsFloat | typing.SupportsIndex | None=None, bounces: typing.SupportsInt | typing.SupportsIndex | None=1, pixel: str='centre', pattern: typing.SupportsInt | typing.SupportsIndex=8, seed: typing.SupportsInt | typing.SupportsIndex=0) -> PathTraced:
+def path_trace(scene: Scene, camera: Camera, width: typing.SupportsInt | typing.SupportsIndex, height: typing.SupportsInt | typing.SupportsIndex, *, samples: typing.SupportsInt | typing.SupportsIndex=1, milliseconds: typing.SupportsFloat | typing.SupportsIndex | None=None, bounces: typing.SupportsInt | typing.SupportsIndex | None=1, pixel: str='centre', pattern: typing.SupportsInt | typing.SupportsIndex=8, seed: typing.SupportsInt | typing.SupportsIndex=0) -> PathTraced:
     """
     Path tracing with exactly `bounces` indirect bounces (None: all); `samples` paths a pixel, fewer where `milliseconds` end sooner.
     """
-def place(grid: Grid, scene: Scene, camera: Camera=None) -> Domain:
+def place(grid: Grid, scene: Scene, camera: Camera | None=None) -> Domain:
     """
     The domain of a grid over the scene's bounds.
     """
@@ -950,19 +949,19 @@ def prefilter(technique: VolumeCoverage | SurfaceCoverage | Anisotropic, lit: Li
     """
     Radiance and opacity of ever larger voxels.
     """
-def shade(gbuffer: GBuffer, gathered: GatheredLight, glossy: GlossyLight=None) -> numpy.typing.NDArray[numpy.float32]:
+def shade(gbuffer: GBuffer, gathered: GatheredLight, glossy: GlossyLight | None=None) -> numpy.typing.NDArray[numpy.float32]:
     """
     (height, width, 3): indirect light that leaves the pixels' surfaces towards the camera.
     """
 @typing.overload
-def shadow(technique: TracedShadows, scene: ..., gbuffer: GBuffer, seed: typing.SupportsInt | typing.SupportsIndex=0) -> DirectLight:
+def shadow(technique: TracedShadows, scene: Scene, gbuffer: GBuffer, seed: typing.SupportsInt | typing.SupportsIndex=0) -> DirectLight:
     ...
 @typing.overload
-def shadow(technique: ShadowMap, scene: ..., gbuffer: GBuffer, seed: typing.SupportsInt | typing.SupportsIndex=0) -> DirectLight:
+def shadow(technique: ShadowMap, scene: Scene, gbuffer: GBuffer, seed: typing.SupportsInt | typing.SupportsIndex=0) -> DirectLight:
     ...
-def sky(technique: TracedSky, scene: ..., gbuffer: GBuffer, seed: typing.SupportsInt | typing.SupportsIndex=0) -> DirectLight:
+def sky(technique: TracedSky, scene: Scene, gbuffer: GBuffer, seed: typing.SupportsInt | typing.SupportsIndex=0) -> DirectLight:
     ...
-def trace_gbuffer(scene: ..., camera: Camera, width: typing.SupportsInt | typing.SupportsIndex, height: typing.SupportsInt | typing.SupportsIndex) -> GBuffer:
+def trace_gbuffer(scene: Scene, camera: Camera, width: typing.SupportsInt | typing.SupportsIndex, height: typing.SupportsInt | typing.SupportsIndex) -> GBuffer:
     """
     The G-buffer by primary rays through pixel centres; textures are filtered by the pixel's footprint.
     """

@@ -45,7 +45,8 @@ def show(records: ir.Records) -> None:
     for column in columns:
         shown.add_column(column, justify="left" if column in columns[:3] else "right")
     for row in records.table.to_dict("records"):
-        setting = ", ".join(f"{name}={row[name]}" for name in ("grid.resolution", "share", "spp") if row.get(name) == row.get(name) and name in row)
+        known = [name for name in ("grid.resolution", "share", "spp") if row.get(name) is not None and row[name] == row[name]]
+        setting = ", ".join(f"{name}={row[name]:g}" if isinstance(row[name], float) else f"{name}={row[name]}" for name in known)
         numbers = [f"{row[key]:.4g}" for key in ("milliseconds", "relmse", "indirect_relmse", "energy_ratio", "flip")]
         shown.add_row(str(row["scene"]), str(row["method"]), setting, *numbers)
     Console().print(shown)

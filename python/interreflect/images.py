@@ -15,7 +15,7 @@ def tone_map(image: NDArray[np.float32], exposure: float = 0.0) -> NDArray[np.ui
     """(h, w, 3) linear radiance to sRGB bytes: times 2^exposure, clipped to [0, 1], sRGB transfer curve. Not-a-number shows magenta."""
     scaled = np.clip(np.nan_to_num(image, nan=0.0, posinf=1e30) * 2.0**exposure, 0, 1)
     encoded = np.where(scaled <= 0.0031308, 12.92 * scaled, 1.055 * scaled ** (1 / 2.4) - 0.055)
-    bytes_ = np.round(255 * encoded).astype(np.uint8)
+    bytes_: NDArray[np.uint8] = np.round(255 * encoded).astype(np.uint8)
     bytes_[np.isnan(image).any(-1)] = (255, 0, 255)
     return bytes_
 

@@ -67,8 +67,9 @@ def _check_plain(name: str, limits: Range, value: Any, default: Any) -> None:
     kinds: tuple[type, ...] = (bool,) if isinstance(default, bool) else (int,) if isinstance(default, int) else (int, float)
     if not isinstance(value, kinds) or (isinstance(value, bool) and bool not in kinds):
         raise TypeError(f"{name} must be {' or '.join(kind.__name__ for kind in kinds)}, got {value!r}")
-    low = value > limits.minimum if limits.open_minimum else value >= limits.minimum
-    if not (low and value <= limits.maximum and math.isfinite(value)):
+    number = float(value)
+    low = number > limits.minimum if limits.open_minimum else number >= limits.minimum
+    if not (low and number <= limits.maximum and math.isfinite(number)):
         ends = f"{'(' if limits.open_minimum else '['}{limits.minimum:g}, {limits.maximum:g}]".replace("inf]", "inf)")
         raise ValueError(f"{name} must lie in {ends}{' ' + limits.unit if limits.unit else ''}, got {value!r}")
 
