@@ -16,7 +16,7 @@ def methods() -> list[Any]:
     return [
         ir.methods.ConstantAmbient(),
         *ir.sweep(cones, {"grid.resolution": [32, 64, 128]}),
-        cones.replace({"share": ir.EveryPixel()}),  # type: ignore[attr-defined]
+        cones.replace({"share": ir.EveryPixel()}),
         *(ir.methods.PathTracing(spp=spp, bounces=1) for spp in (1, 4, 16)),
         *(ir.methods.PathTracingDenoised(spp=spp, bounces=1) for spp in (1, 4)),
     ]

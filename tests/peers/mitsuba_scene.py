@@ -111,7 +111,8 @@ def to_mitsuba(scene: ir.Scene, camera: ir.Camera, size: tuple[int, int]) -> Any
 def render(scene: Any, bounces: int | None, spp: int, seed: int) -> NDArray[np.float32]:
     """All light up to `bounces` indirect bounces. Mitsuba counts path edges: two more."""
     mi = load_mitsuba()
-    integrator = mi.load_dict({"type": "path", "max_depth": -1 if bounces is None else bounces + 2, "rr_depth": 1000 if bounces is not None else 5})
+    depth, roulette = (-1, 5) if bounces is None else (bounces + 2, 1000)
+    integrator = mi.load_dict({"type": "path", "max_depth": depth, "rr_depth": roulette})
     return np.array(mi.render(scene, integrator=integrator, spp=spp, seed=seed))
 
 
@@ -122,4 +123,5 @@ def diffuse(scene: ir.Scene) -> ir.Scene:
                 transform=m.transform)
         for m in scene.meshes
     ]  # fmt: skip
-    return ir.Scene(meshes=plain, lights=scene.lights, cameras=scene.cameras, name=scene.name, bodies={k: v for k, v in scene.bodies.items() if k != "world"})
+    bodies = {name: pose for name, pose in scene.bodies.items() if name != "world"}
+    return ir.Scene(meshes=plain, lights=scene.lights, cameras=scene.cameras, name=scene.name, bodies=bodies)

@@ -23,9 +23,9 @@ class ConstantAmbient(Method):
     is taken for the radiance that arrives from everywhere.
     """
 
-    ambient: float = knob(1.0, "indirect light as a multiple of the mean reflected direct light", minimum=0.0)
-    shadow: Any = stage(_core.TracedShadows())
-    sky: Any = stage(_core.TracedSky())
+    ambient: float = knob(default=1.0, doc="indirect light as a multiple of the mean reflected direct light", minimum=0.0)
+    shadow: Any = stage(default=_core.TracedShadows())
+    sky: Any = stage(default=_core.TracedSky())
 
     bounces = 1
 

@@ -34,7 +34,7 @@ def stage(default: Any, optional: bool = False) -> Any:
     return dataclasses.field(default=default, metadata={"optional": optional})
 
 
-def is_technique(value: object) -> bool:
+def is_technique(value: Any) -> bool:
     return hasattr(type(value), "description")
 
 
@@ -64,7 +64,7 @@ def _check_plain(name: str, limits: Range, value: Any, default: Any) -> None:
         if value not in limits.choices:
             raise ValueError(f"{name} must be one of {', '.join(limits.choices)}, got {value!r}")
         return
-    kinds: tuple[type, ...] = (bool,) if isinstance(default, bool) else (int,) if isinstance(default, int) else (int, float)
+    kinds: Any = (bool,) if isinstance(default, bool) else (int,) if isinstance(default, int) else (int, float)
     if not isinstance(value, kinds) or (isinstance(value, bool) and bool not in kinds):
         raise TypeError(f"{name} must be {' or '.join(kind.__name__ for kind in kinds)}, got {value!r}")
     number = float(value)

@@ -19,11 +19,15 @@ class PathTracing(Method):
     a pixel are added until that time has gone by, whatever `spp` says; how many there were, the profile's count of paths tells.
     """
 
-    spp: int = knob(16, "paths a pixel", minimum=1)
-    milliseconds: float | None = knob(None, "time budget; None: `spp` decides", unit="ms", minimum=0.0, open_minimum=True, optional=True)
-    bounces: int | None = knob(1, "indirect bounces; None: all", minimum=0, optional=True)
-    pixel: str = knob("centre", "the pixel's centre, or its mean", choices=("centre", "box"))
-    pattern: int = knob(8, "pixels at equal places of an n x n pattern share their random numbers within a tile", minimum=1, maximum=32)
+    spp: int = knob(default=16, doc="paths a pixel", minimum=1)
+    milliseconds: float | None = knob(
+        default=None, doc="time budget; None: `spp` decides", unit="ms", minimum=0.0, open_minimum=True, optional=True
+    )
+    bounces: int | None = knob(default=1, doc="indirect bounces; None: all", minimum=0, optional=True)
+    pixel: str = knob(default="centre", doc="the pixel's centre, or its mean", choices=("centre", "box"))
+    pattern: int = knob(
+        default=8, doc="pixels at equal places of an n x n pattern share their random numbers within a tile", minimum=1, maximum=32
+    )
 
     def compose(self, view: View, profile: Profile) -> tuple[Image, Image]:
         with profile.stage("path_trace") as note:

@@ -21,14 +21,14 @@ class VoxelConeTracing(Method):
     """
 
     grid: _core.Grid = _core.Grid(resolution=128)
-    voxelize: Any = stage(_core.SurfaceSampling())
-    light_voxels: Any = stage(_core.TracedLighting())
-    prefilter: Any = stage(_core.SurfaceCoverage())
-    march: Any = stage(_core.DiffuseCones())
-    glossy: Any = stage(_core.GlossyCone(), optional=True)
-    share: Any = stage(_core.Interleaved(width=2, height=2))
-    shadow: Any = stage(_core.TracedShadows())
-    sky: Any = stage(_core.ConeSky())
+    voxelize: Any = stage(default=_core.SurfaceSampling())
+    light_voxels: Any = stage(default=_core.TracedLighting())
+    prefilter: Any = stage(default=_core.SurfaceCoverage())
+    march: Any = stage(default=_core.DiffuseCones())
+    glossy: Any = stage(default=_core.GlossyCone(), optional=True)
+    share: Any = stage(default=_core.Interleaved(width=2, height=2))
+    shadow: Any = stage(default=_core.TracedShadows())
+    sky: Any = stage(default=_core.ConeSky())
 
     bounces: ClassVar[int | None] = 1
 
