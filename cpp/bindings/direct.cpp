@@ -8,6 +8,7 @@
 #include "bindings/rooms.h"
 #include "bindings/run.h"
 #include "bindings/technique.h"
+#include "direct/reflective_shadow_map.h"
 #include "direct/shadow.h"
 #include "direct/sky.h"
 
@@ -44,6 +45,40 @@ SharedLight cone_sky(const GBuffer& g, const py::object& gathered, const py::obj
     return run([&] { return std::make_shared<DirectLight>(sky(ConeSky{}, g, arrived, reflected)); });
 }
 
+void bind_reflective_shadow_map(py::module_& m) {
+    using Map = ReflectiveShadowMap;
+    py::class_<Map, std::shared_ptr<Map>> cls(
+        m, "ReflectiveShadowMap",
+        "What a light sees, and the flux that every texel's surface sends on: (size, size[, 3]) views.");
+    const auto image = [&cls](const char* name, auto member, const char* doc) {
+        cls.def_property_readonly(
+            name,
+            [member](const py::object& self) {
+                const auto& map = self.cast<const Map&>();
+                return image_view(map.*member, map.view.size, map.view.size, self);
+            },
+            doc);
+    };
+    image("position", &Map::position, "World space; (0, 0, 0) where nothing is met.");
+    image("normal", &Map::normal, "Shading normal on the light's side; (0, 0, 0) where nothing is met.");
+    image("incident", &Map::incident, "Flux that arrives through the texel, W.");
+    image("flux", &Map::flux, "Flux that the diffuse lobe sends on: albedo times incident, W.");
+    image("specular", &Map::specular, "Reflectance of the glossy lobe at normal incidence.");
+    image("alpha", &Map::alpha, "GGX width of the glossy lobe.");
+    cls.def_readonly("counts", &Map::counts).def_property_readonly("bytes", [](const Map& map) {
+        return map.position.bytes() + map.normal.bytes() + map.incident.bytes() + map.flux.bytes() + map.specular.bytes() +
+               map.alpha.bytes();
+    });
+    m.def(
+        "reflective_shadow_map",
+        [](const BoundScene& s, int light, int size) {
+            return run(
+                [&] { return std::make_shared<Map>(reflective_shadow_map(s.scene, *s.intersector, *s.lights, light, size)); });
+        },
+        py::arg("scene"), py::arg("light"), py::arg("size"),
+        "What a spot or directional light sees; `light` counts point, then spot, then directional lights.");
+}
+
 }  // namespace
 
 void bind_direct(py::module_& m) {
@@ -70,6 +105,7 @@ void bind_direct(py::module_& m) {
                 [&] { return std::make_shared<DirectLight>(sky(technique, s.scene, *s.intersector, *s.lights, g, seed)); });
         },
         py::arg("technique"), py::arg("scene"), py::arg("gbuffer"), py::arg("seed") = 0);
+    bind_reflective_shadow_map(m);
     m.def("cone_sky", &cone_sky, py::arg("gbuffer"), py::arg("gathered"), py::arg("glossy") = py::none(),
           "What the march's cones left open: albedo / pi * gathered.sky + glossy.sky.");
 }

@@ -326,6 +326,54 @@ class TracedSky:
     @property
     def filter_radius(self) -> int:
         ...
+class ReflectiveShadowMap:
+    """
+    What a light sees, and the flux that every texel's surface sends on: (size, size[, 3]) views.
+    """
+
+    @property
+    def alpha(self) -> numpy.typing.NDArray[numpy.float32]:
+        """
+        GGX width of the glossy lobe.
+        """
+
+    @property
+    def bytes(self) -> int:
+        ...
+
+    @property
+    def counts(self) -> Counts:
+        ...
+
+    @property
+    def flux(self) -> numpy.typing.NDArray[numpy.float32]:
+        """
+        Flux that the diffuse lobe sends on: albedo times incident, W.
+        """
+
+    @property
+    def incident(self) -> numpy.typing.NDArray[numpy.float32]:
+        """
+        Flux that arrives through the texel, W.
+        """
+
+    @property
+    def normal(self) -> numpy.typing.NDArray[numpy.float32]:
+        """
+        Shading normal on the light's side; (0, 0, 0) where nothing is met.
+        """
+
+    @property
+    def position(self) -> numpy.typing.NDArray[numpy.float32]:
+        """
+        World space; (0, 0, 0) where nothing is met.
+        """
+
+    @property
+    def specular(self) -> numpy.typing.NDArray[numpy.float32]:
+        """
+        Reflectance of the glossy lobe at normal incidence.
+        """
 class PathTraced:
     """
     Radiance of every pixel, W/(m^2 sr): read-only (height, width, 3) views.
@@ -950,6 +998,11 @@ def prefilter(technique: VolumeCoverage | SurfaceCoverage | Anisotropic, lit: Li
     Radiance and opacity of ever larger voxels.
     """
 def shade(gbuffer: GBuffer, gathered: GatheredLight, glossy: GlossyLight | None=None) -> numpy.typing.NDArray[numpy.float32]:
+def reflective_shadow_map(scene: ..., light: typing.SupportsInt | typing.SupportsIndex, size: typing.SupportsInt | typing.SupportsIndex) -> ReflectiveShadowMap:
+    """
+    What a spot or directional light sees; `light` counts point, then spot, then directional lights.
+    """
+def shade(gbuffer: GBuffer, gathered: GatheredLight, glossy: GlossyLight=None) -> numpy.typing.NDArray[numpy.float32]:
     """
     (height, width, 3): indirect light that leaves the pixels' surfaces towards the camera.
     """

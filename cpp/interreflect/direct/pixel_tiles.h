@@ -1,5 +1,6 @@
 /// Walks over a G-buffer tile by tile, in an order in which sixteen consecutive pixels are near each other.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <span>
 
@@ -32,6 +33,19 @@ class TilePixels {
     std::array<std::size_t, tile_pixels> all_, hit_;
     std::size_t count_ = 0, hits_ = 0, tile_;
 };
+
+/// Calls visit(pixel) for every pixel of a tile that hit a surface, in the same order.
+template <class Visit>
+void for_each_hit(const GBuffer& g, const Tile& tile, const Visit& visit) {
+    constexpr int block = 4;
+    for (int y0 = tile.y0; y0 < tile.y1; y0 += block)
+        for (int x0 = tile.x0; x0 < tile.x1; x0 += block)
+            for (int y = y0; y < std::min(y0 + block, tile.y1); ++y)
+                for (int x = x0; x < std::min(x0 + block, tile.x1); ++x) {
+                    const std::size_t pixel = static_cast<std::size_t>(y) * g.width + x;
+                    if (g.hit(pixel)) visit(pixel);
+                }
+}
 
 inline std::size_t tile_count(const GBuffer& g) {
     const auto along = [](int pixels) { return static_cast<std::size_t>((pixels + tile_side - 1) / tile_side); };

@@ -1,5 +1,6 @@
 #include "direct/shadow/traced_shadows.h"
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -34,21 +35,67 @@ struct Pending {
     }
 };
 
-/// One light, all pixels of the tile; returns how many rays it took.
-std::size_t trace_delta_light(int number, const TilePixels& pixels, DirectLight& result, const Scene& scene,
-                              const Intersector& intersector, const LightSampler& lights, const GBuffer& g) {
-    Pending pending;
-    for (const std::size_t pixel : pixels) {
-        const PixelSurface surface(g, scene, pixel);
-        const LightSampler::Delta delta = lights.delta(number, surface.point.position);
-        if (max_component(delta.irradiance) <= 0.0f) continue;
-        const vec3 f = evaluate_brdf(surface.point, surface.to_viewer, delta.direction);
-        const vec3 reflected = f * delta.irradiance * glm::dot(surface.point.normal, delta.direction);
-        if (max_component(reflected) > 0.0f) pending.add(surface.shadow_ray(delta.direction, delta.distance), reflected, pixel);
+/// Shadow rays towards delta lights, sixteen at a time as pixels deliver them.
+class ShadowPackets {
+  public:
+    ShadowPackets(DirectLight& result, const Intersector& intersector) : result_(result), intersector_(intersector) {}
+
+    void add(const Ray& ray, const vec3& reflected, std::size_t pixel) {
+        packet_.set(count_, ray);
+        reflected_[count_] = reflected;
+        pixel_[count_] = pixel;
+        if (++count_ == RayPacket::width) flush();
     }
-    const std::size_t rays = pending.count;
-    pending.flush(result, [&](auto queries, auto blocked) { intersector.occluded_coherent(queries, blocked); });
-    return rays;
+    void flush() {
+        const std::uint32_t active = (1U << count_) - 1U;
+        const std::uint32_t open = active & ~(active != 0 ? intersector_.occluded(packet_, active) : 0U);
+        for (int i = 0; i < count_; ++i)
+            if (((open >> i) & 1U) != 0) result_.radiance[pixel_[i]] += reflected_[i];
+        rays_ += static_cast<std::size_t>(count_);
+        count_ = 0;
+    }
+    std::size_t rays() const { return rays_; }
+
+  private:
+    DirectLight& result_;
+    const Intersector& intersector_;
+    RayPacket packet_;
+    std::array<vec3, RayPacket::width> reflected_;
+    std::array<std::size_t, RayPacket::width> pixel_;
+    int count_ = 0;
+    std::size_t rays_ = 0;
+};
+
+/// What a pixel reflects of a delta light that nothing hides.
+vec3 reflected_light(const PixelSurface& surface, const LightSampler::Delta& delta) {
+    const vec3 f = evaluate_brdf(surface.point, surface.to_viewer, delta.direction);
+    return f * delta.irradiance * glm::dot(surface.point.normal, delta.direction);
+}
+
+void trace_positional_light(int number, const Tile& tile, ShadowPackets& packets, const Scene& scene, const LightSampler& lights,
+                            const GBuffer& g) {
+    for_each_hit(g, tile, [&](std::size_t pixel) {
+        const LightSampler::Delta delta = lights.delta(number, g.position[pixel]);
+        if (glm::dot(g.normal[pixel], delta.direction) <= 0.0f || max_component(delta.irradiance) <= 0.0f) return;
+        const PixelSurface surface(g, scene, pixel);
+        const vec3 reflected = reflected_light(surface, delta);
+        if (max_component(reflected) > 0.0f) packets.add(surface.shadow_ray(delta.direction, delta.distance), reflected, pixel);
+    });
+}
+
+/// A directional light is the same at every pixel, and most surfaces are diffuse: what faces away costs a look at two normals.
+void trace_directional_light(const LightSampler::Delta& sun, const Tile& tile, ShadowPackets& packets, const Scene& scene,
+                             const GBuffer& g) {
+    for_each_hit(g, tile, [&](std::size_t pixel) {
+        const float cosine = glm::dot(g.normal[pixel], sun.direction);
+        if (cosine <= 0.0f || glm::dot(g.geometric_normal[pixel], sun.direction) <= 0.0f) return;
+        const bool glossy = max_component(g.specular[pixel]) > 0.0f;
+        const vec3 reflected =
+            glossy ? reflected_light(PixelSurface(g, scene, pixel), sun) : g.albedo[pixel] * sun.irradiance * (cosine / pi);
+        if (!(max_component(reflected) > 0.0f)) return;
+        const vec3 origin = g.position[pixel] + g.geometric_normal[pixel] * g.offset[pixel];
+        packets.add({origin, 0.0f, sun.direction}, reflected, pixel);
+    });
 }
 
 /// The i-th point on an emitter, weighted against the lobe's own samples where there are such.
@@ -105,10 +152,21 @@ DirectLight shadow(const TracedShadows& technique, const Scene& scene, const Int
                    const GBuffer& g, std::uint32_t seed) {
     DirectLight result(g.width, g.height);
     std::vector<Counts> counts(tile_count(g));
-    for_each_tile(g, [&](const TilePixels& pixels) {
-        for (const std::size_t pixel : pixels.all()) result.radiance[pixel] = vec3(0);
-        for (int i = 0; i < lights.delta_count(); ++i)
-            counts[pixels.tile()].shadow_rays += trace_delta_light(i, pixels, result, scene, intersector, lights, g);
+    const int directional = static_cast<int>(scene.directional_lights.size()), positional = lights.delta_count() - directional;
+    parallel_tiles(g.width, g.height, tile_side, [&](const Tile& tile) {
+        for (int y = tile.y0; y < tile.y1; ++y) {
+            vec3* const row = &result.radiance[static_cast<std::size_t>(y) * g.width];
+            std::fill(row + tile.x0, row + tile.x1, vec3(0));
+        }
+        for (int i = 0; i < lights.delta_count(); ++i) {
+            ShadowPackets packets(result, intersector);
+            if (i < positional)
+                trace_positional_light(i, tile, packets, scene, lights, g);
+            else
+                trace_directional_light(lights.delta(i, vec3(0)), tile, packets, scene, g);
+            packets.flush();
+            counts[tile.index].shadow_rays += packets.rays();
+        }
     });
     for (const Counts& one : counts) result.counts += one;
     add_emitters(result, technique.samples, scene, intersector, lights, g, seed);
