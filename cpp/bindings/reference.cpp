@@ -44,10 +44,20 @@ void bind_reference(py::module_& m) {
                 return image_view(p.indirect, p.width, p.height, self);
             },
             "Light reflected more than once.")
+        .def_property_readonly(
+            "certain",
+            [](const py::object& self) -> py::object {
+                const auto& p = self.cast<const PathTraced&>();
+                if (p.certain.empty()) return py::none();
+                return image_view(p.certain, p.width, p.height, self);
+            },
+            "Through pixel centres, the part of `direct` that has no noise: emission and point, spot and directional lights. "
+            "None with the box filter.")
         .def_readonly("samples", &PathTraced::samples, "Paths that every pixel got.")
         .def_readonly("counts", &PathTraced::counts)
         .def_property_readonly(
-            "bytes", [](const PathTraced& p) { return p.direct.bytes() + p.indirect.bytes(); }, "Memory the images hold.");
+            "bytes", [](const PathTraced& p) { return p.direct.bytes() + p.indirect.bytes() + p.certain.bytes(); },
+            "Memory the images hold.");
     m.def("path_trace", &trace, py::arg("scene"), py::arg("camera"), py::arg("width"), py::arg("height"), py::kw_only(),
           py::arg("samples") = 1, py::arg("milliseconds") = py::none(), py::arg("bounces") = 1, py::arg("pixel") = "centre",
           py::arg("pattern") = 8, py::arg("seed") = 0,

@@ -386,6 +386,12 @@ class PathTraced:
         """
 
     @property
+    def certain(self) -> typing.Any:
+        """
+        Through pixel centres, the part of `direct` that has no noise: emission and point, spot and directional lights. None with the box filter.
+        """
+
+    @property
     def counts(self) -> Counts:
         ...
 
@@ -1014,6 +1020,10 @@ def shadow(technique: ShadowMap, scene: Scene, gbuffer: GBuffer, seed: typing.Su
     ...
 def sky(technique: TracedSky, scene: Scene, gbuffer: GBuffer, seed: typing.SupportsInt | typing.SupportsIndex=0) -> DirectLight:
     ...
+def thread_limit() -> int:
+    """
+    How many threads work of the calling thread may use; 0: all.
+    """
 def trace_gbuffer(scene: Scene, camera: Camera, width: typing.SupportsInt | typing.SupportsIndex, height: typing.SupportsInt | typing.SupportsIndex) -> GBuffer:
     """
     The G-buffer by primary rays through pixel centres; textures are filtered by the pixel's footprint.

@@ -56,7 +56,11 @@ def _mesh(mi: Any, scene: ir.Scene, mesh: ir.Mesh, name: str, bsdfs: dict[Any, A
     placed = scene.bodies[mesh.body] @ mesh.transform
     positions = mesh.positions @ placed[:3, :3].T + placed[:3, 3]
     made = mi.Mesh(
-        name, len(positions), len(mesh.triangles), props=properties, has_vertex_normals=mesh.normals is not None,
+        name,
+        len(positions),
+        len(mesh.triangles),
+        props=properties,
+        has_vertex_normals=mesh.normals is not None,
         has_vertex_texcoords=mesh.texcoords is not None,
     )
     values = mi.traverse(made)
@@ -88,7 +92,11 @@ def to_mitsuba(scene: ir.Scene, camera: ir.Camera, size: tuple[int, int]) -> Any
     mi = load_mitsuba()
     bsdfs: dict[Any, Any] = {}
     film = {
-        "type": "hdrfilm", "width": size[0], "height": size[1], "rfilter": {"type": "box"}, "pixel_format": "rgb",
+        "type": "hdrfilm",
+        "width": size[0],
+        "height": size[1],
+        "rfilter": {"type": "box"},
+        "pixel_format": "rgb",
         "component_format": "float32",
     }
     place = mi.ScalarTransform4f().look_at(origin=list(camera.position), target=list(camera.target), up=list(camera.up))
@@ -96,8 +104,14 @@ def to_mitsuba(scene: ir.Scene, camera: ir.Camera, size: tuple[int, int]) -> Any
     made: dict[str, Any] = {
         "type": "scene",
         "sensor": {
-            "type": "perspective", "fov": camera.fov_x, "fov_axis": "x", "to_world": place, "film": film,
-            "near_clip": 1e-4 * extent, "far_clip": 1e4 * extent, "sampler": {"type": "independent"},
+            "type": "perspective",
+            "fov": camera.fov_x,
+            "fov_axis": "x",
+            "to_world": place,
+            "film": film,
+            "near_clip": 1e-4 * extent,
+            "far_clip": 1e4 * extent,
+            "sampler": {"type": "independent"},
         },
     }
     for k, mesh in enumerate(scene.meshes):
@@ -111,17 +125,23 @@ def to_mitsuba(scene: ir.Scene, camera: ir.Camera, size: tuple[int, int]) -> Any
 def render(scene: Any, bounces: int | None, spp: int, seed: int) -> NDArray[np.float32]:
     """All light up to `bounces` indirect bounces. Mitsuba counts path edges: two more."""
     mi = load_mitsuba()
-    depth, roulette = (-1, 5) if bounces is None else (bounces + 2, 1000)
-    integrator = mi.load_dict({"type": "path", "max_depth": depth, "rr_depth": roulette})
+    edges = {"max_depth": -1, "rr_depth": 5} if bounces is None else {"max_depth": bounces + 2, "rr_depth": 1000}
+    integrator = mi.load_dict({"type": "path", **edges})
     return np.array(mi.render(scene, integrator=integrator, spp=spp, seed=seed))
 
 
 def diffuse(scene: ir.Scene) -> ir.Scene:
     """The scene without lobes, cut-outs and smooth normals, which Mitsuba shades otherwise below the horizon."""
     plain = [
-        ir.Mesh(m.positions, m.triangles, texcoords=m.texcoords, material=m.material.replace(specular=(0, 0, 0), mask=None), body=m.body,
-                transform=m.transform)
+        ir.Mesh(
+            m.positions,
+            m.triangles,
+            texcoords=m.texcoords,
+            material=m.material.replace(specular=(0, 0, 0), mask=None),
+            body=m.body,
+            transform=m.transform,
+        )
         for m in scene.meshes
-    ]  # fmt: skip
+    ]
     bodies = {name: pose for name, pose in scene.bodies.items() if name != "world"}
     return ir.Scene(meshes=plain, lights=scene.lights, cameras=scene.cameras, name=scene.name, bodies=bodies)

@@ -168,6 +168,16 @@ vec3 Texture::nearest(const vec2& uv, int index) const {
     return texel(level, x, y);
 }
 
+void Texture::prefetch(const vec2& uv) const {
+    const Level& level = levels_.front();
+    const int x = static_cast<int>(wrap(uv.x) * static_cast<float>(level.width) - 0.5f);
+    const int y = static_cast<int>(wrap(uv.y) * static_cast<float>(level.height) - 0.5f);
+    const std::size_t below = static_cast<std::size_t>(level.first) + static_cast<std::size_t>(y) * level.width + x;
+    const std::size_t above = below + (y + 1 < level.height ? level.width : 0);
+    for (const std::size_t i : {below, above})
+        __builtin_prefetch(srgb_.empty() ? static_cast<const void*>(&linear_[i]) : static_cast<const void*>(&srgb_[i]));
+}
+
 vec3 Texture::filtered(const vec2& uv, const Footprint& footprint) const {
     const float area = std::fabs(footprint.dx.x * footprint.dy.y - footprint.dx.y * footprint.dy.x);
     const float texels = area * static_cast<float>(width()) * static_cast<float>(height());

@@ -36,6 +36,8 @@ class Texture {
     vec3 nearest(const vec2& uv, int level) const;
     /// Trilinear look-up in the levels whose texels are as large as the footprint (its parallelogram's area, in texels).
     vec3 filtered(const vec2& uv, const Footprint& footprint) const;
+    /// Asks for the memory of a look-up in the finest level ahead of time.
+    void prefetch(const vec2& uv) const;
     /// The mean over all texels.
     vec3 mean() const { return texel(levels_.back(), 0, 0); }
 

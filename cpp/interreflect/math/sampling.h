@@ -22,12 +22,12 @@ inline vec2 concentric_disk(const vec2& u) {
 /// Cosine-distributed direction about +z; density cos / pi.
 inline vec3 cosine_hemisphere(const vec2& u) {
     const vec2 d = concentric_disk(u);
-    return {d.x, d.y, std::sqrt(std::fmax(0.0f, 1.0f - d.x * d.x - d.y * d.y))};
+    return {d.x, d.y, std::sqrt(glm::max(0.0f, 1.0f - d.x * d.x - d.y * d.y))};
 }
 
 /// Uniform direction on the sphere; density 1 / (4 pi).
 inline vec3 uniform_sphere(const vec2& u) {
-    const float z = 1.0f - 2.0f * u.x, r = std::sqrt(std::fmax(0.0f, 1.0f - z * z)), phi = 2.0f * pi * u.y;
+    const float z = 1.0f - 2.0f * u.x, r = std::sqrt(glm::max(0.0f, 1.0f - z * z)), phi = 2.0f * pi * u.y;
     return {r * std::cos(phi), r * std::sin(phi), z};
 }
 

@@ -20,8 +20,8 @@ inline constexpr float degrees_to_radians = pi / 180.0f;
 
 /// Relative luminance of linear Rec. 709 / sRGB primaries.
 inline float luminance(const vec3& c) { return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z; }
-inline float max_component(const vec3& v) { return std::fmax(v.x, std::fmax(v.y, v.z)); }
-inline float min_component(const vec3& v) { return std::fmin(v.x, std::fmin(v.y, v.z)); }
+inline float max_component(const vec3& v) { return glm::max(v.x, glm::max(v.y, v.z)); }
+inline float min_component(const vec3& v) { return glm::min(v.x, glm::min(v.y, v.z)); }
 
 /// An orthonormal frame whose third axis is a unit normal [Duff et al. 2017, listing 3].
 struct Frame {

@@ -18,7 +18,7 @@ namespace interreflect {
 enum class PixelFilter { centre, box };
 
 struct PathTracingSettings {
-    int samples = 1;                          // paths a pixel
+    int samples = 1;                          // paths a pixel; 0, through centres: only what is certain
     std::optional<double> milliseconds;       // instead: passes of one path until so much time has gone by; at least one
     std::optional<int> bounces = 1;           // most indirect bounces; 0: direct light only; none: all, by roulette
     PixelFilter pixel = PixelFilter::centre;  // centre: the G-buffer's point with its filtered texture; box: the pixel's mean
@@ -29,6 +29,7 @@ struct PathTracingSettings {
 struct PathTraced {
     int width = 0, height = 0, samples = 0;  // samples: paths that every pixel got
     Buffer<vec3> direct, indirect;           // radiance, W/(m^2 sr)
+    Buffer<vec3> certain;  // through centres: the part of `direct` that has no noise, emission and delta lights; else empty
     Counts counts;
 };
 

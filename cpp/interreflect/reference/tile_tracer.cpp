@@ -5,6 +5,7 @@
 
 #include "math/sampling.h"
 #include "shading/brdf.h"
+#include "visibility/surface_prefetch.h"
 #include "visibility/trace_gbuffer.h"
 
 namespace interreflect {
@@ -83,15 +84,30 @@ void TileTracer::trace(const Tile& tile, int first, int end) {
     const SampleSequence sequence(in_.seed, static_cast<std::uint32_t>(tile.index));
     sequence_ = &sequence;
     counts_ = Counts{};
-    direct_.assign(tracing_tile_pixels, vec3(0));
-    indirect_.assign(tracing_tile_pixels, vec3(0));
+    for (auto* image : {&direct_, &indirect_, &certain_}) image->assign(tracing_tile_pixels, vec3(0));
     make_orders(tile);
+    if (repeats()) {
+        trace_primary(tile, sequence, first);
+        if (first == 0) add_first_lights(certain_);
+    }
     for (int sample = first; sample < end; ++sample) {
-        if (sample == first || in_.pixel == PixelFilter::box) trace_primary(tile, sequence, sample);
-        for (const auto pixel : by_block_) direct_[pixel] += first_emission_[pixel];
+        if (!repeats()) {
+            trace_primary(tile, sequence, sample);
+            add_first_lights(direct_);
+        }
         trace_sample(sample);
     }
     counts_.paths += by_block_.size() * static_cast<std::size_t>(end - first);
+}
+
+/// Emission of the first hits and what delta lights do there.
+void TileTracer::add_first_lights(std::vector<vec3>& to) {
+    for (const auto pixel : by_block_) to[pixel] += first_emission_[pixel];
+    for (int light = 0; light < in_.lights.delta_count(); ++light) {
+        for (const auto pixel : by_block_)
+            if (first_hit_[pixel] != 0) add_delta(light, first_[pixel], first_direction_[pixel], vec3(1), pixel);
+        shadows_.trace(in_.rays, true, to, counts_);
+    }
 }
 
 void TileTracer::trace_primary(const Tile& tile, const SampleSequence& sequence, int sample) {
@@ -109,7 +125,9 @@ void TileTracer::trace_primary(const Tile& tile, const SampleSequence& sequence,
     }
     in_.rays.nearest_coherent(rays_, hits_);
     counts_.rays += count;
+    const SurfacePrefetch prefetch(in_.scene, hits_);
     for (std::size_t i = 0; i < count; ++i) {
+        prefetch.at(i);
         const std::uint32_t pixel = by_block_[i];
         const vec3 direction = first_direction_[pixel] = rays_[i].direction;
         first_hit_[pixel] = hits_[i].valid();
@@ -134,7 +152,7 @@ void TileTracer::trace_sample(int sample) {
     for (int vertex = 0; !paths_.empty(); ++vertex) {
         for (const Pair which : {emitter_point, environment_point, reflection, choices, roulette})
             load_pair(which, vertex, sample);
-        add_delta_lights(vertex);
+        if (vertex > 0) add_delta_lights(vertex);
         if (in_.lights.has_emitters()) add_emitters(vertex);
         if (in_.lights.has_environment()) add_environment(vertex);
         choose_steps(vertex);
@@ -147,22 +165,19 @@ bool TileTracer::continues(const SurfacePoint& at, int vertex) const {
     return vertex < in_.last_vertex || glossy(at) || in_.lights.emitters_are_many();
 }
 
+void TileTracer::add_delta(int number, const SurfacePoint& at, const vec3& direction, const vec3& throughput,
+                           std::uint32_t pixel) {
+    const auto light = in_.lights.delta(number, at.position);
+    const float cosine = glm::dot(at.normal, light.direction);
+    if (cosine <= 0.0f || max_component(light.irradiance) <= 0.0f) return;
+    const vec3 reflected = throughput * evaluate_brdf(at, -direction, light.direction) * light.irradiance * cosine;
+    if (max_component(reflected) > 0.0f) shadows_.add(at, light.direction, light.distance, reflected, pixel);
+}
+
 void TileTracer::add_delta_lights(int vertex) {
-    for (int i = 0; i < in_.lights.delta_count(); ++i) {
-        const auto add = [&](const SurfacePoint& at, const vec3& direction, const vec3& throughput, std::uint32_t pixel) {
-            const auto light = in_.lights.delta(i, at.position);
-            const float cosine = glm::dot(at.normal, light.direction);
-            if (cosine <= 0.0f || max_component(light.irradiance) <= 0.0f) return;
-            const vec3 reflected = throughput * evaluate_brdf(at, -direction, light.direction) * light.irradiance * cosine;
-            if (max_component(reflected) > 0.0f) shadows_.add(at, light.direction, light.distance, reflected, pixel);
-        };
-        if (vertex == 0) {
-            for (const auto pixel : by_block_)
-                if (first_hit_[pixel] != 0) add(first_[pixel], first_direction_[pixel], vec3(1), pixel);
-        } else {
-            for (const Path& path : paths_) add(*path.at, path.direction, path.throughput, path.pixel);
-        }
-        shadows_.trace(in_.rays, vertex == 0, image(vertex), counts_);
+    for (int light = 0; light < in_.lights.delta_count(); ++light) {
+        for (const Path& path : paths_) add_delta(light, *path.at, path.direction, path.throughput, path.pixel);
+        shadows_.trace(in_.rays, false, image(vertex), counts_);
     }
 }
 
@@ -194,7 +209,7 @@ LightDirection TileTracer::sample_environment(const SurfacePoint& at, const vec2
 
 float TileTracer::environment_pdf(const SurfacePoint& at, const vec3& direction) const {
     if (!in_.lights.environment_is_constant()) return in_.lights.environment_pdf(direction);
-    return std::fmax(0.0f, glm::dot(at.normal, direction)) / pi;
+    return glm::max(0.0f, glm::dot(at.normal, direction)) / pi;
 }
 
 void TileTracer::add_environment(int vertex) {
@@ -214,7 +229,7 @@ void TileTracer::choose_steps(int vertex) {
         vec3 throughput = path.throughput * next.weight;
         if (max_component(throughput) <= 0.0f) continue;
         if (in_.last_vertex == Integrand::every_vertex && vertex >= first_roulette) {
-            const float survival = std::fmin(most_survival, max_component(throughput));
+            const float survival = glm::min(most_survival, max_component(throughput));
             if (pair(roulette, path).x >= survival) continue;
             throughput /= survival;
         }
@@ -238,7 +253,9 @@ void TileTracer::take_steps(int vertex) {
     counts_.rays += rays_.size();
     next_paths_.clear();
     auto& surfaces = surfaces_[vertex & 1];
+    const SurfacePrefetch prefetch(in_.scene, hits_);
     for (std::size_t i = 0; i < steps_.size(); ++i) {
+        prefetch.at(i);
         const Path& path = paths_[steps_[i].path];
         if (!hits_[i].valid()) {
             if (in_.lights.has_environment()) image(vertex)[path.pixel] += emission_met(steps_[i], hits_[i], nullptr);

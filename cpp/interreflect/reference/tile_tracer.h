@@ -48,8 +48,11 @@ class TileTracer {
   public:
     explicit TileTracer(const Integrand& integrand);
 
-    /// Samples [first, end) of every pixel of the tile; sums in direct() and indirect(), tracing_tile pixels a row.
+    /// Samples [first, end) of every pixel of the tile; sums in direct() and indirect(), tracing_tile pixels a row. Through pixel
+    /// centres, emission and delta lights of the first hit are the same for every sample: the pass with first = 0 puts them,
+    /// once, into certain() instead.
     void trace(const Tile& tile, int first, int end);
+    const std::vector<vec3>& certain() const { return certain_; }
     const std::vector<vec3>& direct() const { return direct_; }
     const std::vector<vec3>& indirect() const { return indirect_; }
     const Counts& counts() const { return counts_; }
@@ -77,6 +80,9 @@ class TileTracer {
     }
     void trace_primary(const Tile& tile, const SampleSequence& sequence, int sample);
     void trace_sample(int sample);
+    bool repeats() const { return in_.pixel == PixelFilter::centre; }
+    void add_first_lights(std::vector<vec3>& to);
+    void add_delta(int light, const SurfacePoint& at, const vec3& direction, const vec3& throughput, std::uint32_t pixel);
     void add_delta_lights(int vertex);
     void add_emitters(int vertex);
     void add_environment(int vertex);
@@ -104,7 +110,7 @@ class TileTracer {
     std::vector<Ray> rays_;
     std::vector<Hit> hits_;
     ShadowBatch shadows_;
-    std::vector<vec3> direct_, indirect_;
+    std::vector<vec3> direct_, indirect_, certain_;
     Counts counts_;
 };
 

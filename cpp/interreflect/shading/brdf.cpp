@@ -22,7 +22,7 @@ Angles angles(const vec3& n, const vec3& wo, const vec3& wi) {
 }
 
 vec3 schlick(const vec3& specular, float cosine) {
-    const float m = std::fmin(std::fmax(1.0f - cosine, 0.0f), 1.0f);
+    const float m = glm::min(glm::max(1.0f - cosine, 0.0f), 1.0f);
     return specular + (vec3(1) - specular) * (m * m * m * m * m);
 }
 
@@ -35,7 +35,7 @@ float smith_root(float alpha, float cosine) { return std::sqrt(squared(alpha) + 
 
 float phong_cosine(const SurfacePoint& p, const vec3& wo, const vec3& wi) {
     const vec3 mirror = 2.0f * glm::dot(p.normal, wo) * p.normal - wo;
-    return std::fmax(0.0f, glm::dot(mirror, wi));
+    return glm::max(0.0f, glm::dot(mirror, wi));
 }
 /// Scale of the Blinn-Phong lobe for which it reflects everything at normal view.
 float blinn_phong_scale(float n) { return (n + 2.0f) * (n + 4.0f) / (8.0f * pi * (std::exp2(-0.5f * n) + n)); }
@@ -62,7 +62,7 @@ float lobe_pdf(const SurfacePoint& p, const vec3& wo, const vec3& wi, const Angl
             return (n + 1.0f) / (2.0f * pi) * std::pow(phong_cosine(p, wo, wi), n) *
                    (glm::dot(p.normal, wo) > 0.0f ? 1.0f : 0.0f);
         case Lobe::blinn_phong:
-            return (n + 1.0f) / (2.0f * pi) * std::pow(a.cos_half, n) / std::fmax(4.0f * std::fabs(a.cos_o_half), 1e-12f);
+            return (n + 1.0f) / (2.0f * pi) * std::pow(a.cos_half, n) / glm::max(4.0f * std::fabs(a.cos_o_half), 1e-12f);
         case Lobe::ggx:
             break;
     }
@@ -75,14 +75,14 @@ float lobe_pdf(const SurfacePoint& p, const vec3& wo, const vec3& wi, const Angl
 vec3 sample_visible_normal(const vec3& wo, float alpha, const vec2& u) {
     const vec3 stretched = glm::normalize(vec3(wo.x * alpha, wo.y * alpha, wo.z));
     const float phi = 2.0f * pi * u.x, z = (1.0f - u.y) * (1.0f + stretched.z) - stretched.z;
-    const float r = std::sqrt(std::fmax(0.0f, 1.0f - z * z));
+    const float r = std::sqrt(glm::max(0.0f, 1.0f - z * z));
     const vec3 h = vec3(r * std::cos(phi), r * std::sin(phi), z) + stretched;
-    return glm::normalize(vec3(h.x * alpha, h.y * alpha, std::fmax(h.z, 1e-12f)));
+    return glm::normalize(vec3(h.x * alpha, h.y * alpha, glm::max(h.z, 1e-12f)));
 }
 
 /// Density (n + 1) / (2 pi) cos^n about +z.
 vec3 sample_cosine_power(float n, const vec2& u) {
-    const float c = std::pow(1.0f - u.x, 1.0f / (n + 1.0f)), s = std::sqrt(std::fmax(0.0f, 1.0f - c * c)), phi = 2.0f * pi * u.y;
+    const float c = std::pow(1.0f - u.x, 1.0f / (n + 1.0f)), s = std::sqrt(glm::max(0.0f, 1.0f - c * c)), phi = 2.0f * pi * u.y;
     return {s * std::cos(phi), s * std::sin(phi), c};
 }
 
@@ -114,7 +114,7 @@ BrdfValue evaluate_brdf_and_pdf(const SurfacePoint& p, const vec3& wo, const vec
     if (share < 0.0f) return {};
     const float cos_i = glm::dot(p.normal, wi);
     BrdfValue result;
-    result.pdf = (1.0f - share) * std::fmax(cos_i, 0.0f) / pi;
+    result.pdf = (1.0f - share) * glm::max(cos_i, 0.0f) / pi;
     const bool above = cos_i > 0.0f && glm::dot(p.geometric_normal, wo) > 0.0f && glm::dot(p.geometric_normal, wi) > 0.0f;
     if (above) result.value = p.albedo / pi;
     if (share <= 0.0f) return result;
@@ -139,7 +139,7 @@ BrdfSample sample_brdf(const SurfacePoint& p, const vec3& wo, float choose, cons
     sample.wi = glm::normalize(sample.wi);
     const BrdfValue value = evaluate_brdf_and_pdf(p, wo, sample.wi);
     sample.pdf = value.pdf;
-    if (value.pdf > 0.0f) sample.weight = value.value * (std::fmax(0.0f, glm::dot(p.normal, sample.wi)) / value.pdf);
+    if (value.pdf > 0.0f) sample.weight = value.value * (glm::max(0.0f, glm::dot(p.normal, sample.wi)) / value.pdf);
     return sample;
 }
 

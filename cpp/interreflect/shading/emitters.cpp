@@ -99,7 +99,7 @@ void EmitterSampler::append_weights(const Triangle& triangle) {
             for (int i = 0; i < n; ++i)
                 for (int j = 0; i + j < n; ++j) sum += radiance(triangle, point_in(piece, triangle.cuts, {along(i), along(j)}));
             // A tenth by the triangle's mean: a bright point that the pattern missed keeps a density, and so the mean is right.
-            mean = 0.9f * luminance(sum) / (n * (n + 1) / 2) + 0.1f * std::fmax(whole, 1e-3f * luminance(triangle.emission));
+            mean = 0.9f * luminance(sum) / (n * (n + 1) / 2) + 0.1f * glm::max(whole, 1e-3f * luminance(triangle.emission));
         }
         cdf_.push_back(mean * piece_area);
         of_piece_.push_back(index);

@@ -59,7 +59,7 @@ vec3 EnvironmentSampler::sample(const vec2& u) const {
     const Chosen column = choose_entry({&column_cdf_[row.index * (w + 1)], static_cast<std::size_t>(w) + 1}, u.x);
     const float cosine = row_cosine_[row.index] + (row_cosine_[row.index + 1] - row_cosine_[row.index]) * row.rest;
     const float angle = (static_cast<float>(column.index) + column.rest) / static_cast<float>(w) * 2.0f * pi - pi;
-    const float sine = std::sqrt(std::fmax(0.0f, 1.0f - cosine * cosine));
+    const float sine = std::sqrt(glm::max(0.0f, 1.0f - cosine * cosine));
     return environment_->world_from_light * vec3(sine * std::sin(angle), cosine, -sine * std::cos(angle));
 }
 

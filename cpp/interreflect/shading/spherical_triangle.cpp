@@ -24,10 +24,10 @@ vec3 sample_spherical_triangle(const vec3& a, const vec3& b, const vec3& c, cons
     const float numerator = k2 + (cos_phi * k2 - sin_phi * k1) * cos_alpha;
     const float denominator = (sin_phi * k2 + cos_phi * k1) * sin_alpha;
     const float cos_b = std::clamp(denominator != 0.0f ? numerator / denominator : 1.0f, -1.0f, 1.0f);
-    const float sin_b = std::sqrt(std::fmax(0.0f, 1.0f - cos_b * cos_b));
+    const float sin_b = std::sqrt(glm::max(0.0f, 1.0f - cos_b * cos_b));
     const vec3 c_sub = cos_b * a + sin_b * orthogonal_part(c, a);
     const float cos_theta = 1.0f - u.y * (1.0f - glm::dot(c_sub, b));
-    const float sin_theta = std::sqrt(std::fmax(0.0f, 1.0f - cos_theta * cos_theta));
+    const float sin_theta = std::sqrt(glm::max(0.0f, 1.0f - cos_theta * cos_theta));
     return glm::normalize(cos_theta * b + sin_theta * orthogonal_part(c_sub, b));
 }
 
