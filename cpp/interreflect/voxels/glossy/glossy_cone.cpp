@@ -20,7 +20,7 @@ constexpr int widths = 49;  // 0 to 60 degrees; wider lobes reach below the surf
 /// One pixel's cone.
 struct Reflection {
     int pixel, width;
-    vec3 start, direction, albedo;
+    vec3 surface, direction, albedo;  // surface: voxels
 };
 
 struct Work {
@@ -31,6 +31,7 @@ struct Work {
     std::vector<ConeSchedule> schedules;
     std::vector<ConeEnvironment> environments;  // of cones 0, 15, 30, 45, 60 degrees wide (half angle)
     float normal_offset, cut_off;
+    bool own_surface;
 
     vec3 sky(const Reflection& cone, const vec3& direction) const {
         const int nearest = static_cast<int>(std::lround(static_cast<float>(cone.width) * degrees_a_width / 15.0f));
@@ -50,7 +51,7 @@ Reflection reflect(const Work& work, int pixel) {
     const vec3 specular = g.specular[pixel];
     const float degrees = cone.half_angle / degrees_to_radians;
     return {pixel, std::min(static_cast<int>(std::lround(degrees / degrees_a_width)), widths - 1),
-            work.pyramid.domain.to_voxels(g.position[pixel]) + g.geometric_normal[pixel] * work.normal_offset,
+            work.pyramid.domain.to_voxels(g.position[pixel]),
             glm::normalize(tangent * cone.direction.x + normal * cone.direction.y),
             specular * cone.scale + (vec3(1) - specular) * (lobe == Lobe::ggx ? cone.bias : 0.0f)};
 }
@@ -60,8 +61,8 @@ Counts march_width(const Work& work, std::span<const Reflection> cones, ConeBatc
                    Buffer<vec4>& sky) {
     batch.count = static_cast<int>(cones.size());
     for (int i = 0; i < batch.count; ++i) {
-        batch.x[i] = cones[i].start.x, batch.y[i] = cones[i].start.y, batch.z[i] = cones[i].start.z;
-        batch.dx[i] = cones[i].direction.x, batch.dy[i] = cones[i].direction.y, batch.dz[i] = cones[i].direction.z;
+        set_cone(batch, i, cones[i].surface, work.gbuffer.geometric_normal[cones[i].pixel], work.normal_offset, cones[i].direction,
+                 work.own_surface);
     }
     const ConeCounts done = march_cones(work.pyramid, work.schedules[cones.front().width], work.cut_off, batch);
     for (int i = 0; i < batch.count; ++i) {
@@ -95,7 +96,7 @@ Counts march_tile(const Work& work, const Tile& tile, Buffer<vec4>& voxels, Buff
 
 Work prepare(const GlossyCone& technique, const Pyramid& pyramid, const GBuffer& gbuffer, const Scene& scene) {
     Work work{
-        pyramid, gbuffer, scene, {}, {}, {}, static_cast<float>(technique.normal_offset), static_cast<float>(technique.cut_off)};
+        pyramid, gbuffer, scene, {}, {}, {}, static_cast<float>(technique.normal_offset), static_cast<float>(technique.cut_off), technique.own_surface};
     for (const auto& material : scene.materials)
         if (material.glossy()) work.tables[static_cast<int>(material.lobe)] = &lobe_table(material.lobe);
     for (int width = 0; width < widths; ++width)

@@ -20,6 +20,7 @@ struct GlossyCone {
     double level_bias = 0.0;
     double density = 1.0;
     double cut_off = 0.02;
+    bool own_surface = false;
 
     bool operator==(const GlossyCone&) const = default;
     static constexpr auto description = describe(
@@ -33,7 +34,9 @@ struct GlossyCone {
               between(-3, 3)},
         Param{"density", &GlossyCone::density, "optical depth of a texel as a multiple of what its opacity says", Unit::none,
               between(0.1, 10)},
-        Param{"cut_off", &GlossyCone::cut_off, "a cone ends when less than this is open", Unit::none, between(0, 0.5)});
+        Param{"cut_off", &GlossyCone::cut_off, "a cone ends when less than this is open", Unit::none, between(0, 0.5)},
+        Param{"own_surface", &GlossyCone::own_surface,
+              "whether cones also see the plane they start from, as the papers' do; else its expected share is taken out"});
 };
 
 GlossyLight glossy(const GlossyCone& technique, const Pyramid& pyramid, const GBuffer& gbuffer, const Scene& scene,

@@ -32,13 +32,14 @@ struct Work {
     ConeEnvironment environment;
     Block block;
     float normal_offset, cut_off;
+    bool own_surface;
 };
 
 /// The pixels of one phase in one tile, ready to march any cone from.
 struct Receivers {
     int count = 0;
     int pixel[ConeBatch::capacity];
-    vec3 start[ConeBatch::capacity];
+    vec3 surface[ConeBatch::capacity], facing[ConeBatch::capacity];  // voxels; geometric normal
     vec3 tangent[ConeBatch::capacity], bitangent[ConeBatch::capacity], normal[ConeBatch::capacity];
 };
 
@@ -52,19 +53,19 @@ void find_receivers(const Work& work, const Tile& tile, int phase, Receivers& fo
             const Frame frame(g.normal[pixel]);
             const int i = found.count++;
             found.pixel[i] = pixel;
-            found.start[i] = work.pyramid.domain.to_voxels(g.position[pixel]) + g.geometric_normal[pixel] * work.normal_offset;
+            found.surface[i] = work.pyramid.domain.to_voxels(g.position[pixel]);
+            found.facing[i] = g.geometric_normal[pixel];
             found.tangent[i] = frame.tangent;
             found.bitangent[i] = frame.bitangent;
             found.normal[i] = frame.normal;
         }
 }
 
-void fill_batch(const Receivers& from, const vec3& cone, ConeBatch& batch) {
+void fill_batch(const Work& work, const Receivers& from, const vec3& cone, ConeBatch& batch) {
     batch.count = from.count;
     for (int i = 0; i < from.count; ++i) {
         const vec3 d = from.tangent[i] * cone.x + from.bitangent[i] * cone.y + from.normal[i] * cone.z;
-        batch.x[i] = from.start[i].x, batch.y[i] = from.start[i].y, batch.z[i] = from.start[i].z;
-        batch.dx[i] = d.x, batch.dy[i] = d.y, batch.dz[i] = d.z;
+        set_cone(batch, i, from.surface[i], from.facing[i], work.normal_offset, d, work.own_surface);
     }
 }
 
@@ -75,7 +76,7 @@ Counts march_phase(const Work& work, int phase, const Receivers& receivers, Cone
     const bool image = !work.environment.constant();
     for (std::size_t c = phase; c < work.set.cones.size(); c += work.block.phases()) {
         const auto& cone = work.set.cones[c];
-        fill_batch(receivers, cone.direction, batch);
+        fill_batch(work, receivers, cone.direction, batch);
         const ConeCounts done = march_cones(work.pyramid, work.schedule, work.cut_off, batch);
         counts.cones += batch.count, counts.cone_steps += done.steps, counts.voxel_fetches += done.fetches;
         for (int i = 0; i < batch.count; ++i) {
@@ -102,7 +103,8 @@ GatheredLight march(const DiffuseCones& technique, const Pyramid& pyramid, const
                     ConeEnvironment(scene, set.half_angle),
                     block_of(share),
                     static_cast<float>(technique.normal_offset),
-                    static_cast<float>(technique.cut_off)};
+                    static_cast<float>(technique.cut_off),
+                    technique.own_surface};
     std::vector<float> weights(work.block.phases(), 0.0f);
     for (std::size_t c = 0; c < set.cones.size(); ++c) weights[c % weights.size()] += set.cones[c].weight;
 

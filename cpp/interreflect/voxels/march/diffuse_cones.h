@@ -23,6 +23,7 @@ struct DiffuseCones {
     double level_bias = 0.0;
     double density = 1.0;
     double cut_off = 0.02;
+    bool own_surface = false;
 
     bool operator==(const DiffuseCones&) const = default;
     static constexpr auto description = describe(
@@ -42,7 +43,9 @@ struct DiffuseCones {
               Unit::none, between(-3, 3)},
         Param{"density", &DiffuseCones::density, "optical depth of a texel as a multiple of what its opacity says", Unit::none,
               between(0.1, 10)},
-        Param{"cut_off", &DiffuseCones::cut_off, "a cone ends when less than this is open", Unit::none, between(0, 0.5)});
+        Param{"cut_off", &DiffuseCones::cut_off, "a cone ends when less than this is open", Unit::none, between(0, 0.5)},
+        Param{"own_surface", &DiffuseCones::own_surface,
+              "whether cones also see the plane they start from, as the papers' do; else its expected share is taken out"});
 };
 
 GatheredLight march(const DiffuseCones& technique, const Pyramid& pyramid, const GBuffer& gbuffer, const Scene& scene,

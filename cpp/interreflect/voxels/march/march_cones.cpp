@@ -97,6 +97,41 @@ HWY_INLINE hn::Vec<decltype(d4)> sample(const LevelView& level, const Taps& taps
     return sum;
 }
 
+#if HWY_MAX_BYTES >= 64
+/// Two levels of one volume each at once, in the two halves of a vector. `weights`: of the two columns of texels of the finer level and
+/// of the coarser one, blend included.
+HWY_INLINE hn::Vec<decltype(d4)> sample_both(const LevelView& l0, const Taps& t0, const LevelView& l1, const Taps& t1, int lane,
+                                             const float* weights) {
+    const hn::FixedTag<float, 16> d16;
+    const hn::FixedTag<float, 8> d8;
+    const hn::FixedTag<Half, 16> h16;
+    const hn::FixedTag<Half, 8> h8;
+    const Half *p = l0.texels + t0.offset[lane], *q = l1.texels + t1.offset[lane];
+    const auto load = [&](std::size_t o0, std::size_t o1) HWY_ATTR {
+        return hn::PromoteTo(d16, hn::Combine(h16, hn::LoadU(h8, q + o1), hn::LoadU(h8, p + o0)));
+    };
+    const auto vy = hn::Combine(d16, hn::Set(d8, t1.fy[lane]), hn::Set(d8, t0.fy[lane]));
+    const auto vz = hn::Combine(d16, hn::Set(d8, t1.fz[lane]), hn::Set(d8, t0.fz[lane]));
+    auto a = load(0, 0), b = load(l0.row, l1.row);
+    auto c = load(l0.slice, l1.slice), e = load(l0.slice + l0.row, l1.slice + l1.row);
+    a = hn::MulAdd(hn::Sub(b, a), vy, a);
+    c = hn::MulAdd(hn::Sub(e, c), vy, c);
+    a = hn::MulAdd(hn::Sub(c, a), vz, a);
+    alignas(64) static constexpr int32_t spread[16] = {0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3};
+    a = hn::Mul(a, hn::TableLookupLanes(hn::LoadDup128(d16, weights), hn::SetTableIndices(d16, spread)));
+    const auto half = hn::Add(hn::LowerHalf(d8, a), hn::UpperHalf(d8, a));
+    return hn::Add(hn::LowerHalf(d4, half), hn::UpperHalf(d4, half));
+}
+
+/// The weights of sample_both for a vector of cones.
+template <class D>
+HWY_INLINE void column_weights(D d, const Taps& fine, const Taps& coarse, float blend, float* weights) {
+    const auto share = hn::Set(d, blend), rest = hn::Set(d, 1.0f - blend);
+    const auto right0 = hn::Mul(hn::Load(d, fine.fx), rest), right1 = hn::Mul(hn::Load(d, coarse.fx), share);
+    hn::StoreInterleaved4(hn::Sub(rest, right0), right0, hn::Sub(share, right1), right1, d, weights);
+}
+#endif
+
 /// Distance at which rays leave the box [0, size].
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V exit_distance(D d, V p, V direction, float size) {
@@ -104,6 +139,27 @@ HWY_INLINE V exit_distance(D d, V p, V direction, float size) {
     const V to_wall = hn::Sub(hn::IfThenElseZero(hn::Gt(direction, zero), hn::Set(d, size)), p);
     const auto moves = hn::Gt(hn::Abs(direction), hn::Set(d, 1e-6f));
     return hn::IfThenElse(moves, hn::Div(to_wall, hn::IfThenElse(moves, direction, hn::Set(d, 1.0f))), hn::Set(d, 1e9f));
+}
+
+/// Integral of the tent of the trilinear filter from -infinity to x (texels).
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V tent_integral(D d, V x) {
+    const V one = hn::Set(d, 1.0f), half = hn::Set(d, 0.5f);
+    const V t = hn::Min(hn::Max(x, hn::Set(d, -1.0f)), one);
+    const V rise = hn::Sub(one, hn::Abs(t));
+    const V tail = hn::Mul(half, hn::Mul(rise, rise));
+    return hn::IfThenElse(hn::Lt(t, hn::Zero(d)), tail, hn::Sub(one, tail));
+}
+
+/// What the receiver's own plane adds to a level's filtered opacity at a sample: its voxels are a layer `width` texels thick.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V own_opacity(D d, float inverse_size, V height, V width, V axis_plane, V axis_sample, V aligned) {
+    const V scale = hn::Set(d, inverse_size), half = hn::Set(d, 0.5f), one = hn::Set(d, 1.0f), zero = hn::Zero(d);
+    const V h = hn::Mul(height, scale), reach = hn::Mul(width, half);
+    const V mean = hn::Sub(tent_integral(d, hn::Add(h, reach)), tent_integral(d, hn::Sub(h, reach)));
+    const V centre = hn::Add(hn::Floor(hn::Mul(axis_plane, scale)), half);
+    const V known = hn::Max(hn::Sub(one, hn::Abs(hn::Sub(hn::Mul(axis_sample, scale), centre))), zero);
+    return hn::IfThenElse(hn::Gt(aligned, zero), known, mean);
 }
 
 /// 1 - (1 - a)^exponent.
@@ -117,6 +173,31 @@ HWY_INLINE V stretched_opacity(D d, V a, float exponent) {
     const V floor = hn::Set(d, 1e-12f);
     const V power = hn::Exp(d, hn::Mul(hn::Set(d, exponent), hn::Log(d, hn::Max(clear, floor))));
     return hn::Sub(one, hn::IfThenElseZero(hn::Gt(clear, floor), power));
+}
+
+/// What each marching cone of a vector sees at its sample: four floats a lane in `colour`. `l1`: the coarser level, or null.
+template <class D>
+HWY_INLINE void sample_lanes(D d, unsigned bits, const LevelView& l0, const Taps& fine, const LevelView* l1, const Taps& coarse, float blend,
+                             const float* directions, float* colour) {
+#if HWY_MAX_BYTES >= 64
+    if (l1 != nullptr && l1->faces == 1) {
+        alignas(64) float weights[4 * max_lanes];
+        column_weights(d, fine, coarse, blend, weights);
+        for (unsigned left = bits; left != 0; left &= left - 1) {
+            const int lane = static_cast<int>(hwy::Num0BitsBelowLS1Bit_Nonzero32(left));
+            hn::Store(sample_both(l0, fine, *l1, coarse, lane, weights + 4 * lane), d4, colour + 4 * lane);
+        }
+        return;
+    }
+#endif
+    (void)d;
+    const auto share = hn::Set(d4, blend);
+    for (unsigned left = bits; left != 0; left &= left - 1) {
+        const int lane = static_cast<int>(hwy::Num0BitsBelowLS1Bit_Nonzero32(left));
+        auto seen = sample(l0, fine, lane, directions + lane);
+        if (l1 != nullptr) seen = hn::MulAdd(hn::Sub(sample(*l1, coarse, lane, directions + lane), seen), share, seen);
+        hn::Store(seen, d4, colour + 4 * lane);
+    }
 }
 
 ConeCounts march_batch(const Pyramid& pyramid, const ConeSchedule& schedule, float cut_off, ConeBatch& batch) {
@@ -135,6 +216,11 @@ ConeCounts march_batch(const Pyramid& pyramid, const ConeSchedule& schedule, flo
         const V dx = hn::Load(d, batch.dx + first), dy = hn::Load(d, batch.dy + first), dz = hn::Load(d, batch.dz + first);
         const V exit = hn::Min(hn::Min(exit_distance(d, px, dx, sx), exit_distance(d, py, dy, sy)), exit_distance(d, pz, dz, sz));
         auto active = hn::FirstN(d, static_cast<std::size_t>(batch.count - first < lanes ? batch.count - first : lanes));
+        const V height = hn::Load(d, batch.height + first), slope = hn::Load(d, batch.slope + first);
+        const V width = hn::Load(d, batch.width + first), aligned = hn::Load(d, batch.aligned + first);
+        const V axis_plane = hn::Load(d, batch.axis_plane + first), axis_start = hn::Load(d, batch.axis_start + first);
+        const V axis_direction = hn::Load(d, batch.axis_direction + first);
+        const auto has_plane = hn::Gt(width, zero);
         V r = zero, g = zero, b = zero, open = one;
         alignas(64) float colour[4 * max_lanes] = {};
         Taps fine, coarse;
@@ -156,21 +242,22 @@ ConeCounts march_batch(const Pyramid& pyramid, const ConeSchedule& schedule, flo
             const LevelView& l1 = levels[two ? step.level + 1 : step.level];
             place_taps(d, l0, x, y, z, fine);
             if (two) place_taps(d, l1, x, y, z, coarse);
-            const auto blend = hn::Set(d4, step.blend);
-            for (unsigned left = bits; left != 0; left &= left - 1) {
-                const int lane = static_cast<int>(hwy::Num0BitsBelowLS1Bit_Nonzero32(left));
-                const float* direction = batch.dx + first + lane;
-                auto seen = sample(l0, fine, lane, direction);
-                if (two) seen = hn::MulAdd(hn::Sub(sample(l1, coarse, lane, direction), seen), blend, seen);
-                hn::Store(seen, d4, colour + 4 * lane);
-            }
+            sample_lanes(d, bits, l0, fine, two ? &l1 : nullptr, coarse, step.blend, batch.dx + first, colour);
             const auto marching = static_cast<std::uint64_t>(hn::CountTrue(d, active));
             counts.steps += marching;
             counts.fetches += marching * static_cast<std::uint64_t>(two ? l0.faces == 6 ? 6 : l1.faces == 6 ? 4 : 2 : 1);
             V tr, tg, tb, ta;
             hn::LoadInterleaved4(d, colour, tr, tg, tb, ta);
             ta = hn::Min(hn::Max(ta, zero), one);
-            const V opacity = hn::IfThenElseZero(active, stretched_opacity(d, ta, step.exponent));
+            const V h = hn::MulAdd(slope, distance, height), along = hn::MulAdd(axis_direction, distance, axis_start);
+            V own = own_opacity(d, l0.inverse_size, h, width, axis_plane, along, aligned);
+            if (two) {
+                const V next = own_opacity(d, l1.inverse_size, h, width, axis_plane, along, aligned);
+                own = hn::MulAdd(hn::Sub(next, own), hn::Set(d, step.blend), own);
+            }
+            own = hn::IfThenElseZero(has_plane, own);
+            const V others = hn::Div(hn::Max(hn::Sub(ta, own), zero), hn::Max(hn::Sub(one, own), hn::Set(d, 1e-3f)));
+            const V opacity = hn::IfThenElseZero(active, stretched_opacity(d, hn::Min(others, one), step.exponent));
             // Radiance is premultiplied by the texel's opacity; the step shows more or less of it.
             const V share = hn::Mul(open, hn::Div(opacity, hn::Max(ta, hn::Set(d, 1e-6f))));
             r = hn::MulAdd(share, tr, r);

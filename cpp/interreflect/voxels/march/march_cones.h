@@ -12,9 +12,32 @@ struct ConeBatch {
     int count = 0;
     alignas(64) float x[capacity], y[capacity], z[capacity];     // start, voxels of the pyramid's domain
     alignas(64) float dx[capacity], dy[capacity], dz[capacity];  // unit direction
+    // The plane of the receiver, which is taken out of what the cones see; width 0: nothing is.
+    alignas(64) float height[capacity], slope[capacity];  // of the start above the plane, voxels; of the height along the cone
+    alignas(64) float width[capacity];                    // |nx| + |ny| + |nz| of its normal: the thickness of a layer of voxels
+    // The coordinate along the normal's largest component, of the plane, the start and the direction, and how far the normal agrees
+    // with that axis: 1 where the layer's place in the grid is known, 0 where its mean over all places must do.
+    alignas(64) float axis_plane[capacity], axis_start[capacity], axis_direction[capacity], aligned[capacity];
     // Results: radiance in the pyramid's unit (times `scale` is W/(m^2 sr)), and the share that leaves the domain unblocked.
     alignas(64) float r[capacity], g[capacity], b[capacity], open[capacity];
 };
+
+/// Enters the cone at `i`; `normal` is that of the plane it starts from, `offset` voxels above it.
+inline void set_cone(ConeBatch& batch, int i, const vec3& surface, const vec3& normal, float offset, const vec3& direction,
+                     bool see_own_surface) {
+    const vec3 start = surface + normal * offset, size = glm::abs(normal);
+    const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+    batch.x[i] = start.x, batch.y[i] = start.y, batch.z[i] = start.z;
+    batch.dx[i] = direction.x, batch.dy[i] = direction.y, batch.dz[i] = direction.z;
+    batch.height[i] = offset;
+    batch.slope[i] = glm::dot(direction, normal);
+    batch.width[i] = see_own_surface ? 0.0f : size.x + size.y + size.z;
+    batch.axis_plane[i] = surface[axis];
+    batch.axis_start[i] = start[axis];
+    batch.axis_direction[i] = direction[axis];
+    // Within 8 degrees of an axis: over the few texels of a filter such a plane stays in one layer.
+    batch.aligned[i] = size[axis] > 0.99f ? 1.0f : 0.0f;
+}
 
 struct ConeCounts {
     std::uint64_t steps = 0, fetches = 0;

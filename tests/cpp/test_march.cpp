@@ -1,0 +1,188 @@
+#include <glm/gtc/packing.hpp>
+
+#include <gtest/gtest.h>
+
+#include "math/rng.h"
+#include "math/sampling.h"
+#include "shading/share.h"
+#include "voxels/glossy/lobe_table.h"
+#include "voxels/march/cone_set.h"
+#include "voxels/march/march_cones.h"
+
+namespace interreflect {
+namespace {
+
+/// A pyramid of one value everywhere, 2^(levels - 1) voxels on a side.
+Pyramid uniform_pyramid(int levels, const vec4& value, int faces = 1) {
+    Pyramid pyramid;
+    pyramid.domain.cells = ivec3(1 << (levels - 1));
+    pyramid.faces = faces;
+    for (int i = 0; i < levels; ++i) {
+        Pyramid::Level level;
+        level.size = ivec3(1 << (levels - 1 - i));
+        level.faces = i == 0 ? 1 : faces;
+        level.texels = Buffer<std::uint16_t>(4 * level.volume() * level.faces);
+        for (std::size_t t = 0; t < level.texels.size(); ++t)
+            level.texels[t] = glm::packHalf1x16(value[static_cast<int>(t % 4)]);
+        pyramid.levels.push_back(std::move(level));
+    }
+    return pyramid;
+}
+
+ConeBatch random_cones(const Pyramid& pyramid, int count) {
+    ConeBatch batch{};
+    Rng rng(7, 1);
+    batch.count = count;
+    for (int i = 0; i < count; ++i) {
+        const vec3 at = vec3(rng.uniform(), rng.uniform(), rng.uniform()) * vec3(pyramid.domain.cells);
+        set_cone(batch, i, at, {0, 0, 1}, 0.0f, uniform_sphere({rng.uniform(), rng.uniform()}), true);
+    }
+    return batch;
+}
+
+TEST(ConeSets, OfTheCosineKindIntegrateTheCosineExactly) {
+    for (const int count : {3, 4, 5, 6, 8, 12, 24, 100, 256})
+        for (const float degrees : {0.0f, 10.0f, 30.0f, 70.0f}) {
+            const ConeSet set = cosine_cones(count, degrees * degrees_to_radians);
+            float weight = 0;
+            for (const auto& cone : set.cones) {
+                weight += cone.weight;
+                EXPECT_GT(cone.direction.z, 0.0f);
+                EXPECT_NEAR(glm::length(cone.direction), 1.0f, 1e-6f);
+            }
+            EXPECT_EQ(set.cones.size(), static_cast<std::size_t>(count));
+            EXPECT_NEAR(weight, 1.0f, 1e-5f);
+            EXPECT_NEAR(set.mean_cosine(), 2.0f / 3.0f, 1e-5f) << count << " cones of " << degrees;
+        }
+}
+
+TEST(ConeSets, OfThePapersGiveWhatTheErrataSay) {
+    EXPECT_NEAR(freed_thesis_cones().mean_cosine(), 0.7365f, 1e-4f);  // ERRATA: instead of .6667
+    EXPECT_EQ(freed_thesis_cones().cones.size(), 5U);
+    EXPECT_EQ(freed_program_cones().cones.size(), 6U);
+}
+
+TEST(ConeSchedules, AdvanceEvenWithoutAnAperture) {
+    const Pyramid pyramid = uniform_pyramid(5, vec4(0));
+    const ConeSchedule schedule = make_schedule({0.0f, 0.75f, 0.5f, 0.0f, 1.0f}, pyramid);
+    ASSERT_GT(schedule.steps.size(), 10U);
+    for (std::size_t i = 1; i < schedule.steps.size(); ++i)
+        EXPECT_NEAR(schedule.steps[i].distance - schedule.steps[i - 1].distance, 0.375f, 1e-4f);
+}
+
+TEST(ConeSchedules, LevelsFollowTheDiameter) {
+    const Pyramid pyramid = uniform_pyramid(8, vec4(0));
+    const float half_angle = 0.4f;
+    for (const auto& step : make_schedule({half_angle, 0.75f, 0.5f, 0.0f, 1.0f}, pyramid).steps) {
+        // The diameter half a step ahead of the sample is the one that the step began with, grown over half of it.
+        const float diameter = 0.75f + 2.0f * std::tan(half_angle) * step.distance;
+        const float level = static_cast<float>(step.level) + step.blend;
+        if (level > 0.0f && level < 7.0f) EXPECT_NEAR(level, std::log2(diameter), 0.2f);
+    }
+}
+
+TEST(Cones, SeeAUniformWorldAsItIs) {
+    for (const int faces : {1, 6}) {
+        const Pyramid pyramid = uniform_pyramid(6, {0.25f, 1.5f, 40.0f, 1.0f}, faces);
+        ConeBatch batch = random_cones(pyramid, 100);
+        march_cones(pyramid, make_schedule({0.5f, 0.75f, 0.5f, 0.0f, 1.0f}, pyramid), 0.02f, batch);
+        for (int i = 0; i < batch.count; ++i) {
+            EXPECT_NEAR(batch.r[i], 0.25f, 1e-3f);  // half floats: 5e-4 relative
+            EXPECT_NEAR(batch.g[i], 1.5f, 2e-3f);
+            EXPECT_NEAR(batch.b[i], 40.0f, 4e-2f);
+            EXPECT_EQ(batch.open[i], 0.0f);
+        }
+    }
+}
+
+TEST(Cones, SeeNothingInAnEmptyWorld) {
+    const Pyramid pyramid = uniform_pyramid(6, vec4(0));
+    ConeBatch batch = random_cones(pyramid, 37);
+    march_cones(pyramid, make_schedule({0.3f, 0.75f, 0.5f, -1.0f, 1.0f}, pyramid), 0.02f, batch);
+    for (int i = 0; i < batch.count; ++i) {
+        EXPECT_EQ(batch.r[i], 0.0f);
+        EXPECT_EQ(batch.open[i], 1.0f);
+    }
+}
+
+TEST(Cones, FogBlocksByItsDepthWhateverTheStep) {
+    // Opacity a of a voxel is depth -ln(1 - a) a voxel: along x from the middle of a 64-voxel box, 32 voxels (and the filter's reach).
+    const float a = 0.02f;
+    const Pyramid pyramid = uniform_pyramid(7, {0, 0, 0, a});
+    for (const float step : {0.25f, 0.5f, 1.0f}) {
+        ConeBatch batch{};
+        batch.count = 1;
+        set_cone(batch, 0, {32, 32, 32}, {0, 0, 1}, 0.0f, {1, 0, 0}, true);
+        march_cones(pyramid, make_schedule({0.0f, 1.0f, step, 0.0f, 1.0f}, pyramid), 0.0f, batch);
+        EXPECT_NEAR(std::log(batch.open[0]) / std::log(1.0f - a), 33.0f, 1.0f) << step;
+    }
+}
+
+TEST(LobeTables, HoldTheAlbedosOfTheClosedForms) {
+    // GROUND_TRUTH.md: GGX at normal view with F = 1; tolerance: 256 samples an entry and interpolation in between.
+    const float expected[][2] = {{0.1f, 0.9884f}, {0.25f, 0.9158f}, {0.5f, 0.688f}, {1.0f, 1.0f - std::log(2.0f)}};
+    for (const auto& [alpha, albedo] : expected) EXPECT_NEAR(lobe_table(Lobe::ggx).at(alpha, 1.0f).scale, albedo, 0.006f) << alpha;
+    for (const float alpha : {0.05f, 0.2f, 0.6f}) {
+        EXPECT_NEAR(lobe_table(Lobe::phong).at(alpha, 1.0f).scale, 1.0f, 0.01f) << alpha;
+        EXPECT_NEAR(lobe_table(Lobe::blinn_phong).at(alpha, 1.0f).scale, 1.0f, 0.02f) << alpha;
+    }
+}
+
+TEST(LobeTables, ConesOfPhongLobesFollowFromTheExponent) {
+    for (const float n : {5.0f, 50.0f, 500.0f}) {
+        const LobeCone cone = lobe_table(Lobe::phong).at(std::sqrt(2.0f / (n + 2.0f)), 1.0f);
+        // Weighted by the cosine to the normal too, which at normal view raises the exponent by one.
+        EXPECT_NEAR(std::cos(cone.half_angle), (n + 1.0f) / (n + 3.0f), 0.01f) << n;
+        EXPECT_NEAR(cone.direction.y, 1.0f, 1e-3f);
+    }
+}
+
+/// A G-buffer of a plane facing the camera, the right half further away by `step`.
+GBuffer plane(int width, int height, float step) {
+    GBuffer g;
+    g.width = width, g.height = height;
+    g.position = Buffer<vec3>(g.pixels());
+    g.normal = Buffer<vec3>(g.pixels(), vec3(0, 0, 1));
+    g.geometric_normal = Buffer<vec3>(g.pixels(), vec3(0, 0, 1));
+    g.triangle = Buffer<std::uint32_t>(g.pixels(), 0U);
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x)
+            g.position[y * width + x] = {0.01f * static_cast<float>(x), 0.01f * static_cast<float>(y), x < width / 2 ? -1.0f : -1.0f - step};
+    return g;
+}
+
+struct Halves {
+    float left, right;
+};
+/// Merges pixels that each hold their phase's share of `left` or `right`.
+Buffer<vec4> merged(const GBuffer& g, const Interleaved& share, const std::vector<float>& weights, const Halves& value) {
+    Buffer<vec4> partial(g.pixels());
+    for (int y = 0; y < g.height; ++y)
+        for (int x = 0; x < g.width; ++x)
+            partial[y * g.width + x] = vec4((x < g.width / 2 ? value.left : value.right) * weights[block_of(share).phase(x, y)]);
+    return merge(share, g, weights, std::move(partial));
+}
+
+TEST(Interleaved, KeepsAUniformFieldOfAnyBlockAndBleedsOverNoEdge) {
+    for (const int width : {1, 2, 3, 4, 8})
+        for (const int height : {1, 2, 5}) {
+            const Interleaved share{.width = width, .height = height};
+            std::vector<float> weights(width * height);
+            for (std::size_t i = 0; i < weights.size(); ++i)
+                weights[i] = static_cast<float>(2 * (i + 1)) / static_cast<float>(weights.size() * (weights.size() + 1));
+            const GBuffer g = plane(70, 37, 0.5f);
+            const auto picture = merged(g, share, weights, {3.0f, 7.0f});
+            for (int y = 0; y < g.height; ++y)
+                for (int x = 0; x < g.width; ++x)
+                    ASSERT_NEAR(picture[y * g.width + x].x, x < g.width / 2 ? 3.0f : 7.0f, 1e-5f) << width << " " << height << " " << x << " " << y;
+        }
+}
+
+TEST(Interleaved, LeavesPixelsThatHitNothingEmpty) {
+    GBuffer g = plane(16, 16, 0.0f);
+    g.triangle[5] = no_hit;
+    EXPECT_EQ(merged(g, {}, {0.25f, 0.25f, 0.25f, 0.25f}, {1, 1})[5], vec4(0));
+}
+
+}  // namespace
+}  // namespace interreflect
