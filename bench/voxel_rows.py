@@ -19,7 +19,7 @@ def rows(calibration: Calibration, sponza: Sponza | None) -> list[Row]:
     if sponza is None:
         return [absent(name, f"at most {bound:g} ms", "Sponza is not here") for name, bound in bounds.items()]
     method = ir.methods.VoxelConeTracing(
-        grid=ir.Grid(resolution=128), march=ir.DiffuseCones(), share=ir.Interleaved(width=2, height=2),
+        grid=ir.Grid(resolution=128), march=ir.DiffuseCones(cones=6), share=ir.Interleaved(width=2, height=2),
         shadow=ir.TracedShadows(), sky=ir.ConeSky(), glossy=None,
     )  # fmt: skip
     prepared = method.prepare(sponza.scene)

@@ -188,9 +188,12 @@ void bind_voxels(py::module_& m) {
         py::arg("technique"), py::arg("scene"), py::arg("voxels"), py::arg("seed") = 0, "The radiance that each voxel reflects.");
     m.def(
         "prefilter",
-        [](const Prefilter& technique, const LitVoxels& lit) {
+        [](const Prefilter& technique, std::shared_ptr<const LitVoxels> lit) {
             return run([&] {
-                return std::visit([&](const auto& t) { return std::make_shared<Pyramid>(prefilter(t, lit)); }, technique);
+                auto pyramid =
+                    std::make_shared<Pyramid>(std::visit([&](const auto& t) { return prefilter(t, *lit); }, technique));
+                pyramid->lit = lit;
+                return pyramid;
             });
         },
         py::arg("technique"), py::arg("lit"), "Radiance and opacity of ever larger voxels.");

@@ -100,6 +100,7 @@ struct Pyramid {
     int faces = 1;       // 1, or 6: of every level but the finest
     float scale = 1.0f;  // radiance = texel * scale: a power of two that keeps every radiance within half floats
     std::vector<Level> levels;
+    std::shared_ptr<const LitVoxels> lit;  // what it was made from, both sides of every voxel; null: unknown
     Counts counts;
 
     std::size_t bytes() const {

@@ -26,7 +26,7 @@ class VoxelConeTracing(Method):
     prefilter: Any = stage(default=_core.SurfaceCoverage())
     march: Any = stage(default=_core.DiffuseCones())
     glossy: Any = stage(default=_core.GlossyCone(), optional=True)
-    share: Any = stage(default=_core.Interleaved(width=2, height=2))
+    share: Any = stage(default=_core.Interleaved(width=4, height=4))
     shadow: Any = stage(default=_core.TracedShadows())
     sky: Any = stage(default=_core.ConeSky())
 

@@ -61,8 +61,8 @@ Counts march_width(const Work& work, std::span<const Reflection> cones, ConeBatc
                    Buffer<vec4>& sky) {
     batch.count = static_cast<int>(cones.size());
     for (int i = 0; i < batch.count; ++i) {
-        set_cone(batch, i, cones[i].surface, work.gbuffer.geometric_normal[cones[i].pixel], work.normal_offset, cones[i].direction,
-                 work.own_surface);
+        set_cone(batch, i, cones[i].surface, work.gbuffer.geometric_normal[cones[i].pixel], work.normal_offset,
+                 cones[i].direction, work.own_surface);
     }
     const ConeCounts done = march_cones(work.pyramid, work.schedules[cones.front().width], work.cut_off, batch);
     for (int i = 0; i < batch.count; ++i) {
@@ -95,8 +95,15 @@ Counts march_tile(const Work& work, const Tile& tile, Buffer<vec4>& voxels, Buff
 }
 
 Work prepare(const GlossyCone& technique, const Pyramid& pyramid, const GBuffer& gbuffer, const Scene& scene) {
-    Work work{
-        pyramid, gbuffer, scene, {}, {}, {}, static_cast<float>(technique.normal_offset), static_cast<float>(technique.cut_off), technique.own_surface};
+    Work work{pyramid,
+              gbuffer,
+              scene,
+              {},
+              {},
+              {},
+              static_cast<float>(technique.normal_offset),
+              static_cast<float>(technique.cut_off),
+              technique.own_surface};
     for (const auto& material : scene.materials)
         if (material.glossy()) work.tables[static_cast<int>(material.lobe)] = &lobe_table(material.lobe);
     for (int width = 0; width < widths; ++width)

@@ -16,8 +16,8 @@ namespace interreflect {
 struct GlossyCone {
     double step = 0.5;
     double first_diameter = 0.75;
-    double normal_offset = 1.0;
-    double level_bias = 0.0;
+    double normal_offset = 1.5;
+    double level_bias = -1.0;
     double density = 1.0;
     double cut_off = 0.02;
     bool own_surface = false;

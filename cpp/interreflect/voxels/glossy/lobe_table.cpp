@@ -34,7 +34,7 @@ LobeCone integrate(Lobe lobe, float alpha, float cosine) {
         const vec2 u(unit_float(bits.x), unit_float(bits.y));
         const BrdfSample sample = sample_brdf(full, wo, 0.0f, u);
         cone.scale += sample.weight.x / samples;
-        cone.bias += sample_brdf(edge, wo, 0.0f, u).weight.x / samples;
+        if (lobe == Lobe::ggx) cone.bias += sample_brdf(edge, wo, 0.0f, u).weight.x / samples;
         mean += sample.wi * (sample.weight.x / samples);
     }
     const float length = std::hypot(mean.x, mean.z);

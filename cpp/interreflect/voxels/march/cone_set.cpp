@@ -30,6 +30,44 @@ std::vector<int> ring_counts(int count) {
     return counts;
 }
 
+/// Cones at one tilt, for a ring of the projected disk.
+struct Ring {
+    int cones;
+    float share;        // of all cones
+    float mean_cosine;  // over the ring's part of the hemisphere
+    bool axis;          // one cone along the normal
+
+    float cosine(float factor) const { return axis ? 1.0f : std::fmin(1.0f, factor * mean_cosine); }
+};
+
+std::vector<Ring> make_rings(int count) {
+    std::vector<Ring> rings;
+    // Squared radius u on the projected disk: cos = sqrt(1 - u), whose integral is -2/3 (1 - u)^(3/2).
+    const auto integral = [](float u) { return -2.0f / 3.0f * std::pow(std::fmax(0.0f, 1.0f - u), 1.5f); };
+    int placed = 0;
+    const auto counts = ring_counts(count);
+    for (const int cones : counts) {
+        const float inner = static_cast<float>(placed) / static_cast<float>(count);
+        placed += cones;
+        const float outer = static_cast<float>(placed) / static_cast<float>(count);
+        rings.push_back(
+            {cones, outer - inner, (integral(outer) - integral(inner)) / (outer - inner), cones == 1 && counts.size() > 1});
+    }
+    return rings;
+}
+
+/// The factor on all rings' cosines for which their weighted sum is `wanted`: wide cones must stand steeper than their parts.
+float common_tilt(const std::vector<Ring>& rings, float wanted) {
+    double low = 0, high = 100;
+    for (int i = 0; i < 60; ++i) {
+        const double middle = 0.5 * (low + high);
+        double sum = 0;
+        for (const auto& ring : rings) sum += ring.share * ring.cosine(static_cast<float>(middle));
+        (sum < wanted ? low : high) = middle;
+    }
+    return static_cast<float>(low);
+}
+
 }  // namespace
 
 float ConeSet::mean_cosine() const {
@@ -58,26 +96,14 @@ ConeSet cosine_cones(int count, float half_angle) {
     ConeSet set;
     const auto n = static_cast<float>(count);
     set.half_angle = half_angle > 0.0f ? half_angle : std::acos(1.0f - 1.0f / n);
-    const float spread = mean_cosine_to_axis(set.half_angle);
-    const auto rings = ring_counts(count);
-    // Squared radius u on the projected disk: cos = sqrt(1 - u), whose integral is -2/3 (1 - u)^(3/2).
-    const auto integral = [](float u) { return -2.0f / 3.0f * std::pow(std::fmax(0.0f, 1.0f - u), 1.5f); };
-    float missing = 2.0f / 3.0f / spread;  // sum of weight * cos that the cones must reach
-    int placed = 0;
-    for (std::size_t ring = 0; ring < rings.size(); ++ring) {
-        const float inner = static_cast<float>(placed) / n, outer = static_cast<float>(placed + rings[ring]) / n,
-                    share = outer - inner;
-        // The outermost ring takes what the inner ones could not (a wide cone about the normal cannot reach its part's cosine).
-        const bool last = ring + 1 == rings.size();
-        const float cosine = last ? missing / share : std::fmin(1.0f, (integral(outer) - integral(inner)) / share / spread);
-        missing -= share * cosine;
-        for (int i = 0; i < rings[ring]; ++i) {
-            const float turn = (static_cast<float>(i) + 0.5f * static_cast<float>(ring % 2)) / static_cast<float>(rings[ring]);
-            const bool axis = ring == 0 && rings[ring] == 1 && !last;
-            set.cones.push_back({axis ? vec3(0, 0, 1) : tilted(std::fmin(cosine, 1.0f), 2.0f * pi * turn), 1.0f / n});
+    const auto rings = make_rings(count);
+    const float tilt = common_tilt(rings, 2.0f / 3.0f / mean_cosine_to_axis(set.half_angle));
+    for (std::size_t r = 0; r < rings.size(); ++r)
+        for (int i = 0; i < rings[r].cones; ++i) {
+            // Every other ring is turned by half a cone, so that cones stand in the gaps of the ring within.
+            const float turn = (static_cast<float>(i) + 0.5f * static_cast<float>(r % 2)) / static_cast<float>(rings[r].cones);
+            set.cones.push_back({tilted(rings[r].cosine(tilt), 2.0f * pi * turn), 1.0f / n});
         }
-        placed += rings[ring];
-    }
     return set;
 }
 

@@ -26,8 +26,9 @@ ConeSet freed_thesis_cones();
 /// Six cones of 60 degrees full aperture, one along the normal with weight 1/4, five tilted by 60 degrees [program of Freed
 /// 2018].
 ConeSet freed_program_cones();
-/// `count` cones of equal weight: rings of equal projected solid angle, each cone at the mean cosine of its part, so that the set
-/// integrates radiance ~ cos exactly. half_angle: radians; 0: cones of the hemisphere's solid angle / count.
+/// `count` cones of equal weight: rings of equal projected solid angle, each cone at the mean cosine of its part times a common
+/// factor, so that the set integrates radiance ~ cos exactly. half_angle: radians; 0: cones of the hemisphere's solid angle /
+/// count.
 ConeSet cosine_cones(int count, float half_angle);
 
 }  // namespace interreflect

@@ -1,6 +1,7 @@
 #include "voxels/march/diffuse_cones.h"
 
 #include <algorithm>
+#include <numeric>
 #include <vector>
 
 #include "math/parallel.h"
@@ -12,8 +13,8 @@
 namespace interreflect {
 namespace {
 
-constexpr int tile_size = 16;
-static_assert(tile_size * tile_size <= ConeBatch::capacity);
+constexpr int most_receivers = 16;  // of one phase, on a side of a tile: neighbours that read the same texels
+static_assert(most_receivers * most_receivers <= ConeBatch::capacity);
 
 ConeSet choose_set(const DiffuseCones& technique) {
     const auto half_angle = static_cast<float>(technique.half_angle) * degrees_to_radians;
@@ -46,10 +47,11 @@ struct Receivers {
 void find_receivers(const Work& work, const Tile& tile, int phase, Receivers& found) {
     const GBuffer& g = work.gbuffer;
     found.count = 0;
-    for (int y = tile.y0; y < tile.y1; ++y)
-        for (int x = tile.x0; x < tile.x1; ++x) {
+    // Tiles begin on a block's border.
+    for (int y = tile.y0 + phase / work.block.width; y < tile.y1; y += work.block.height)
+        for (int x = tile.x0 + phase % work.block.width; x < tile.x1; x += work.block.width) {
             const int pixel = y * g.width + x;
-            if (work.block.phase(x, y) != phase || !g.hit(pixel)) continue;
+            if (!g.hit(pixel)) continue;
             const Frame frame(g.normal[pixel]);
             const int i = found.count++;
             found.pixel[i] = pixel;
@@ -110,6 +112,9 @@ GatheredLight march(const DiffuseCones& technique, const Pyramid& pyramid, const
 
     const bool image = !work.environment.constant();
     Buffer<vec4> voxels(gbuffer.pixels()), sky(image ? gbuffer.pixels() : 0);
+    // A multiple of both sides of the block, with at most `most_receivers` of them along each.
+    const int common = std::lcm(work.block.width, work.block.height), least = std::min(work.block.width, work.block.height);
+    const int tile_size = std::max(1, std::min(most_receivers * least, 64) / common) * common;
     const int columns = (gbuffer.width + tile_size - 1) / tile_size, rows = (gbuffer.height + tile_size - 1) / tile_size;
     std::vector<Counts> counts(static_cast<std::size_t>(columns) * rows);
     parallel_tiles(gbuffer.width, gbuffer.height, tile_size, [&](const Tile& tile) {

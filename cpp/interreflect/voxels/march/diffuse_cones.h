@@ -15,12 +15,12 @@ namespace interreflect {
 /// Cones over the hemisphere, marched through ever coarser levels of the pyramid [Crassin et al. 2011].
 struct DiffuseCones {
     std::string set = "cosine";
-    int cones = 12;
+    int cones = 40;
     double half_angle = 0.0;
-    double step = 0.5;
+    double step = 1.0;
     double first_diameter = 0.75;
-    double normal_offset = 1.0;
-    double level_bias = 0.0;
+    double normal_offset = 1.5;
+    double level_bias = -1.0;
     double density = 1.0;
     double cut_off = 0.02;
     bool own_surface = false;

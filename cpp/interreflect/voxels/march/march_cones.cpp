@@ -98,8 +98,8 @@ HWY_INLINE hn::Vec<decltype(d4)> sample(const LevelView& level, const Taps& taps
 }
 
 #if HWY_MAX_BYTES >= 64
-/// Two levels of one volume each at once, in the two halves of a vector. `weights`: of the two columns of texels of the finer level and
-/// of the coarser one, blend included.
+/// Two levels of one volume each at once, in the two halves of a vector. `weights`: of the two columns of texels of the finer
+/// level and of the coarser one, blend included.
 HWY_INLINE hn::Vec<decltype(d4)> sample_both(const LevelView& l0, const Taps& t0, const LevelView& l1, const Taps& t1, int lane,
                                              const float* weights) {
     const hn::FixedTag<float, 16> d16;
@@ -107,9 +107,8 @@ HWY_INLINE hn::Vec<decltype(d4)> sample_both(const LevelView& l0, const Taps& t0
     const hn::FixedTag<Half, 16> h16;
     const hn::FixedTag<Half, 8> h8;
     const Half *p = l0.texels + t0.offset[lane], *q = l1.texels + t1.offset[lane];
-    const auto load = [&](std::size_t o0, std::size_t o1) HWY_ATTR {
-        return hn::PromoteTo(d16, hn::Combine(h16, hn::LoadU(h8, q + o1), hn::LoadU(h8, p + o0)));
-    };
+    const auto load = [&](std::size_t o0, std::size_t o1)
+                          HWY_ATTR { return hn::PromoteTo(d16, hn::Combine(h16, hn::LoadU(h8, q + o1), hn::LoadU(h8, p + o0))); };
     const auto vy = hn::Combine(d16, hn::Set(d8, t1.fy[lane]), hn::Set(d8, t0.fy[lane]));
     const auto vz = hn::Combine(d16, hn::Set(d8, t1.fz[lane]), hn::Set(d8, t0.fz[lane]));
     auto a = load(0, 0), b = load(l0.row, l1.row);
@@ -177,8 +176,8 @@ HWY_INLINE V stretched_opacity(D d, V a, float exponent) {
 
 /// What each marching cone of a vector sees at its sample: four floats a lane in `colour`. `l1`: the coarser level, or null.
 template <class D>
-HWY_INLINE void sample_lanes(D d, unsigned bits, const LevelView& l0, const Taps& fine, const LevelView* l1, const Taps& coarse, float blend,
-                             const float* directions, float* colour) {
+HWY_INLINE void sample_lanes(D d, unsigned bits, const LevelView& l0, const Taps& fine, const LevelView* l1, const Taps& coarse,
+                             float blend, const float* directions, float* colour) {
 #if HWY_MAX_BYTES >= 64
     if (l1 != nullptr && l1->faces == 1) {
         alignas(64) float weights[4 * max_lanes];

@@ -15,8 +15,8 @@ struct ConeBatch {
     // The plane of the receiver, which is taken out of what the cones see; width 0: nothing is.
     alignas(64) float height[capacity], slope[capacity];  // of the start above the plane, voxels; of the height along the cone
     alignas(64) float width[capacity];                    // |nx| + |ny| + |nz| of its normal: the thickness of a layer of voxels
-    // The coordinate along the normal's largest component, of the plane, the start and the direction, and how far the normal agrees
-    // with that axis: 1 where the layer's place in the grid is known, 0 where its mean over all places must do.
+    // The coordinate along the normal's largest component, of the plane, the start and the direction, and how far the normal
+    // agrees with that axis: 1 where the layer's place in the grid is known, 0 where its mean over all places must do.
     alignas(64) float axis_plane[capacity], axis_start[capacity], axis_direction[capacity], aligned[capacity];
     // Results: radiance in the pyramid's unit (times `scale` is W/(m^2 sr)), and the share that leaves the domain unblocked.
     alignas(64) float r[capacity], g[capacity], b[capacity], open[capacity];

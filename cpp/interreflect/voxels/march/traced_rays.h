@@ -14,7 +14,7 @@ namespace interreflect {
 /// Rays against the triangles from each pixel; what a ray hits has the radiance of the finest voxel there. An unbiased estimate
 /// of the voxels' light: cosine-distributed over the hemisphere (`march`), in proportion to the lobe (`glossy`).
 struct TracedRays {
-    int samples = 64;
+    int samples = 512;
     int tile = 1;
 
     bool operator==(const TracedRays&) const = default;

@@ -1,36 +1,50 @@
 #include "voxels/march/voxel_lookup.h"
 
+#include <algorithm>
 #include <glm/gtc/packing.hpp>
 #include <limits>
 
 namespace interreflect {
 namespace {
 
-vec4 finest_texel(const Pyramid& pyramid, const ivec3& at) {
+/// Opacity of a texel of the finest level.
+float opacity(const Pyramid& pyramid, const ivec3& at) {
     const auto& level = pyramid.levels.front();
-    const std::uint16_t* texel = level.texels.data() + 4 * level.index(at.x, at.y, at.z);
-    return {glm::unpackHalf1x16(texel[0]), glm::unpackHalf1x16(texel[1]), glm::unpackHalf1x16(texel[2]),
-            glm::unpackHalf1x16(texel[3])};
+    return glm::unpackHalf1x16(level.texels[4 * level.index(at.x, at.y, at.z) + 3]);
 }
 
-/// The occupied texel among the 26 around `cell` whose centre is nearest to `point` (voxels); alpha 0 where there is none.
-vec4 nearest_neighbour(const Pyramid& pyramid, const ivec3& cell, const vec3& point) {
-    vec4 found(0);
+/// The occupied cell among `cell` and the 26 around it that is nearest to `point` (voxels); false where there is none.
+bool nearest_occupied(const Pyramid& pyramid, const vec3& point, ivec3& cell) {
+    if (opacity(pyramid, cell) > 0.0f) return true;
+    const ivec3 centre = cell;
     float least = std::numeric_limits<float>::infinity();
     for (int z = -1; z <= 1; ++z)
         for (int y = -1; y <= 1; ++y)
             for (int x = -1; x <= 1; ++x) {
-                const ivec3 at = cell + ivec3(x, y, z);
+                const ivec3 at = centre + ivec3(x, y, z);
                 if (glm::any(glm::lessThan(at, ivec3(0))) || glm::any(glm::greaterThanEqual(at, pyramid.domain.cells))) continue;
                 const vec3 away = vec3(at) + 0.5f - point;
-                const float distance = glm::dot(away, away);
-                if (distance >= least) continue;
-                const vec4 texel = finest_texel(pyramid, at);
-                if (texel.w <= 0.0f) continue;
-                found = texel;
-                least = distance;
+                if (glm::dot(away, away) >= least || opacity(pyramid, at) <= 0.0f) continue;
+                least = glm::dot(away, away);
+                cell = at;
             }
-    return found;
+    return least < std::numeric_limits<float>::infinity();
+}
+
+vec3 texel_radiance(const Pyramid& pyramid, const ivec3& at) {
+    const auto& level = pyramid.levels.front();
+    const std::uint16_t* texel = level.texels.data() + 4 * level.index(at.x, at.y, at.z);
+    return vec3(glm::unpackHalf1x16(texel[0]), glm::unpackHalf1x16(texel[1]), glm::unpackHalf1x16(texel[2])) *
+           (pyramid.scale / glm::unpackHalf1x16(texel[3]));
+}
+
+/// The side of the voxel that faces the same way as the surface that was seen.
+vec3 side_radiance(const LitVoxels& lit, std::uint32_t cell, const vec3& seen_normal) {
+    const auto& cells = lit.grid->cell;
+    const auto found = std::lower_bound(cells.begin(), cells.end(), cell);
+    const auto voxel = static_cast<std::size_t>(found - cells.begin());
+    const bool back = glm::dot(lit.grid->normal[voxel], seen_normal) < 0.0f && !lit.back.empty();
+    return back ? lit.back[voxel] : lit.radiance[voxel];
 }
 
 }  // namespace
@@ -40,10 +54,10 @@ vec3 radiance_at_hit(const Pyramid& pyramid, const Scene& scene, const Hit& hit,
     const bool back = glm::dot(at.geometric_normal, direction) > 0.0f;
     if (back && !scene.materials[scene.material_of(hit.triangle)].two_sided) return vec3(0);
     const vec3 point = pyramid.domain.to_voxels(at.position);
-    const ivec3 cell = glm::clamp(ivec3(glm::floor(point)), ivec3(0), pyramid.domain.cells - 1);
-    vec4 texel = finest_texel(pyramid, cell);
-    if (texel.w <= 0.0f) texel = nearest_neighbour(pyramid, cell, point);
-    return texel.w > 0.0f ? vec3(texel) * (pyramid.scale / texel.w) : vec3(0);
+    ivec3 cell = glm::clamp(ivec3(glm::floor(point)), ivec3(0), pyramid.domain.cells - 1);
+    if (!nearest_occupied(pyramid, point, cell)) return vec3(0);
+    if (pyramid.lit == nullptr) return texel_radiance(pyramid, cell);
+    return side_radiance(*pyramid.lit, pyramid.domain.cell(cell), back ? -at.geometric_normal : at.geometric_normal);
 }
 
 }  // namespace interreflect
