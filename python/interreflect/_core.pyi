@@ -851,10 +851,10 @@ class DiffuseCones:
     description: ClassVar[dict[str, Any]]
     stages: ClassVar[tuple[str, ...]]
 
-    def __init__(self, *, set: str=..., cones: int=..., half_angle: float=..., step: float=..., first_diameter: float=..., normal_offset: float=..., level_bias: float=..., density: float=..., cut_off: float=...) -> None:
+    def __init__(self, *, set: str=..., cones: int=..., half_angle: float=..., step: float=..., first_diameter: float=..., normal_offset: float=..., level_bias: float=..., density: float=..., cut_off: float=..., own_surface: bool=...) -> None:
         ...
 
-    def replace(self, *, set: str=..., cones: int=..., half_angle: float=..., step: float=..., first_diameter: float=..., normal_offset: float=..., level_bias: float=..., density: float=..., cut_off: float=...) -> DiffuseCones:
+    def replace(self, *, set: str=..., cones: int=..., half_angle: float=..., step: float=..., first_diameter: float=..., normal_offset: float=..., level_bias: float=..., density: float=..., cut_off: float=..., own_surface: bool=...) -> DiffuseCones:
         ...
 
     def asdict(self) -> dict[str, Any]:
@@ -901,6 +901,10 @@ class DiffuseCones:
     @property
     def cut_off(self) -> float:
         ...
+
+    @property
+    def own_surface(self) -> bool:
+        ...
 class TracedRays:
     """Rays against the triangles from each pixel, radiance read from the finest voxel at the hit."""
     description: ClassVar[dict[str, Any]]
@@ -933,10 +937,10 @@ class GlossyCone:
     description: ClassVar[dict[str, Any]]
     stages: ClassVar[tuple[str, ...]]
 
-    def __init__(self, *, step: float=..., first_diameter: float=..., normal_offset: float=..., level_bias: float=..., density: float=..., cut_off: float=...) -> None:
+    def __init__(self, *, step: float=..., first_diameter: float=..., normal_offset: float=..., level_bias: float=..., density: float=..., cut_off: float=..., own_surface: bool=...) -> None:
         ...
 
-    def replace(self, *, step: float=..., first_diameter: float=..., normal_offset: float=..., level_bias: float=..., density: float=..., cut_off: float=...) -> GlossyCone:
+    def replace(self, *, step: float=..., first_diameter: float=..., normal_offset: float=..., level_bias: float=..., density: float=..., cut_off: float=..., own_surface: bool=...) -> GlossyCone:
         ...
 
     def asdict(self) -> dict[str, Any]:
@@ -970,6 +974,10 @@ class GlossyCone:
 
     @property
     def cut_off(self) -> float:
+        ...
+
+    @property
+    def own_surface(self) -> bool:
         ...
 def _rebuild(arg0: typing.Any, arg1: dict[str, typing.Any]) -> typing.Any:
     """
