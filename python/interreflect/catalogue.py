@@ -18,14 +18,21 @@ Row = tuple[str, ...]  # name, knob, type, unit, range, default, meaning
 def scene_rows() -> list[Row]:
     """A row per built-in scene, and one per knob of it."""
     from interreflect import scenes
+    from interreflect.scenes.builtin.knobs import knobs_of
 
     rows: list[Row] = []
     for name in dir(scenes):
         function = getattr(scenes, name)
         rows.append((name, "", "", "", "", "", _first_line(function)))
+        described = knobs_of(function)
         for knob in inspect.signature(function).parameters.values():
             default = "required" if knob.default is knob.empty else repr(knob.default)
-            rows.append(("", knob.name, str(knob.annotation), "", "", default, _line_about(function, knob.name)))
+            limits = described.get(knob.name)
+            if limits:
+                kind = "choice" if limits.choices else type(knob.default).__name__
+                rows.append(("", knob.name, kind, limits.unit, _range(limits), default, limits.doc))
+            else:
+                rows.append(("", knob.name, str(knob.annotation), "", "", default, _line_about(function, knob.name)))
     return rows
 
 

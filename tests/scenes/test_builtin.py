@@ -167,3 +167,26 @@ WRONG = [
 def test_knobs_out_of_range_are_refused_by_name_bound_and_value(name, knobs, message):
     with pytest.raises(ValueError, match=message):
         getattr(scenes, name)(**knobs)
+
+
+def test_every_knob_of_every_scene_is_described_and_told_in_the_docstring():
+    import inspect
+
+    from interreflect.scenes.builtin.knobs import knobs_of
+
+    for name in set(dir(scenes)) - {"closed_form"}:
+        make = getattr(scenes, name)
+        described = knobs_of(make)
+        assert list(described) == list(inspect.signature(make).parameters), name
+        for knob, about in described.items():
+            assert f"{knob}: {about.doc}; {about.range}" in make.__doc__
+
+
+def test_an_unknown_knob_is_a_type_error_with_the_nearest_name():
+    with pytest.raises(TypeError, match="thin_wall has no knob 'thicknes'; did you mean 'thickness'"):
+        scenes.thin_wall(thicknes=0.1)
+
+
+def test_the_name_of_a_scene_tells_its_knobs():
+    assert scenes.thin_wall(0.1, offset=0.01).name == "thin_wall(thickness=0.1, rotation=0, offset=0.01)"
+    assert scenes.cornell_box(light="spot").name == "cornell_box(light='spot', box='diffuse')"

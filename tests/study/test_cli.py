@@ -99,7 +99,7 @@ def test_the_cache_is_listed_and_cleared(tmp_path, monkeypatch):
 
 def test_every_built_in_scene_is_listed_with_its_knobs():
     rows = scene_rows()
-    assert ("", "light", "str", "", "", "'area'") in [row[:6] for row in rows]
+    assert ("", "light", "choice", "", "area, point, spot", "'area'") in [row[:6] for row in rows]
     done = interreflect("scenes")
     assert done.returncode == 0, done.stderr
     assert "cornell_box" in done.stdout

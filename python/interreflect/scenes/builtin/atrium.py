@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from collections import defaultdict
 from functools import cache
+from typing import Annotated
 
 import numpy as np
 
 from interreflect.scenes.builtin.atrium_parts import cloth
 from interreflect.scenes.builtin.atrium_plan import BAY, FLOOR, HALF_X, SLAB, Part, on_sides, structure
+from interreflect.scenes.builtin.knobs import Knob, built_in
 from interreflect.scenes.builtin.patterns import brocade, chequers, encoded, masonry, plain, planks
 from interreflect.scenes.builtin.shapes import Shape, join, mesh, moved
-from interreflect.scenes.checks import whole
 from interreflect.scenes.values import Camera, DirectionalLight, EnvironmentLight, Material, Mesh, Scene, Texture
 
 CLOTH_SHARE = 0.22  # of the triangles, more or less: it takes what the structure leaves
@@ -24,25 +25,25 @@ CLOTHS = {
 }
 
 
-def atrium(detail: int = 60_000) -> Scene:
+@built_in
+def atrium(
+    detail: Annotated[int, Knob("aimed at and met within 10 %", 5_000, 300_000, unit="triangles")] = 60_000,
+) -> Scene:
     """A court of 16 x 6.4 metres between two storeys of arcades, with curtains, banners, urns and a fountain; sun and blue sky.
 
-    detail: number of triangles to aim at, from 5,000 to 300,000; met within 10 %. More triangles make rounder columns, arches and
-    balusters and finer cloth; nothing moves.
-    All is diffuse with procedural textures, flat normals and albedo below 0.8. Cameras "court" and "gallery".
-    ValueError names the knob, its bound and its value.
+    More triangles make rounder columns, arches and balusters and finer cloth; nothing moves. All is diffuse with procedural
+    textures, flat normals and albedo below 0.8. Cameras "court" and "gallery".
     """
-    target = whole("atrium.detail", detail, 5_000, 300_000)
-    parts = _fitted((1 - CLOTH_SHARE) * target)
+    parts = _fitted((1 - CLOTH_SHARE) * detail)
     materials = _materials()
-    meshes = [*_built(parts, materials), *_hangings(target - sum(part.triangles for part in parts), materials)]
+    meshes = [*_built(parts, materials), *_hangings(detail - sum(part.triangles for part in parts), materials)]
     sun = DirectionalLight(direction=(-0.42, -1, -0.3), irradiance=(17, 15, 11.8))
     sky = EnvironmentLight(radiance=(0.95, 1.2, 1.6))
     cameras = {
         "court": Camera(position=(7.1, 1.75, 2.0), target=(-3.0, 2.75, -1.35), fov_x=72),
         "gallery": Camera(position=(4.3, 6.9, 3.0), target=(-2.4, 3.0, -2.9), fov_x=74),
     }
-    return Scene(name=f"atrium(detail={target})", meshes=meshes, lights=[sun, sky], cameras=cameras)
+    return Scene(meshes=meshes, lights=[sun, sky], cameras=cameras)
 
 
 def _fitted(triangles: float) -> list[Part]:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from typing import Annotated
+
 import numpy as np
 
+from interreflect.scenes.builtin.knobs import Knob, built_in
 from interreflect.scenes.builtin.shapes import box as make_box
 from interreflect.scenes.builtin.shapes import join, mesh, moved, quad, triple
-from interreflect.scenes.checks import choice
 from interreflect.scenes.values import Camera, Light, Material, Mesh, PointLight, Scene, SpotLight
 
 WHITE = Material(name="white", albedo=(0.74, 0.74, 0.74))
@@ -17,26 +19,25 @@ BLOCKS = {
     "diffuse": Material(name="tall block", albedo=(0.74, 0.74, 0.74)),
     "glossy": Material(name="tall block", albedo=(0.12, 0.12, 0.12), specular=(0.65, 0.65, 0.65), roughness=0.35),
 }
+LIGHTS = ("area", "point", "spot")
 LAMP = (16.0, 12.0, 6.5)  # radiance of the area light; the other two emit the same flux
 LAMP_SIZE = (0.56, 0.44)
 
 
-def cornell_box(light: str = "area", box: str = "diffuse") -> Scene:
+@built_in
+def cornell_box(
+    light: Annotated[str, Knob("below the ceiling; the spot lights the red wall and the floor", choices=LIGHTS)] = "area",
+    box: Annotated[str, Knob("what the tall block is made of; glossy is a rough GGX lobe", choices=tuple(BLOCKS))] = "diffuse",
+) -> Scene:
     """A room of 2 x 2 x 2 units on y = 0, open towards +z, with a tall and a short block. One camera, "front".
 
-    light: "area" (a warm rectangle below the ceiling), "point" (below its centre) or "spot" (a cone that lights the red wall and
-    the floor, so that most of the picture is indirect). All three emit the same flux.
-    box: "diffuse", or "glossy": the tall block reflects with a rough GGX lobe.
-    ValueError for any other value.
+    All lights emit the same flux; under the spot most of the picture is indirect.
     """
-    choice("cornell_box.light", light, ("area", "point", "spot"))
-    choice("cornell_box.box", box, tuple(BLOCKS))
     meshes = [*_room(), *_blocks(BLOCKS[box])]
     if light == "area":
         meshes.append(_lamp())
     camera = Camera(position=(0, 1, 3.9), target=(0, 1, 0), fov_x=39, size=(512, 512))
-    name = f"cornell_box(light={light!r}, box={box!r})"
-    return Scene(name=name, meshes=meshes, lights=_lights(light), cameras={"front": camera})
+    return Scene(meshes=meshes, lights=_lights(light), cameras={"front": camera})
 
 
 def _room() -> list[Mesh]:

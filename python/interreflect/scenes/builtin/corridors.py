@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from typing import Annotated
+
+from interreflect.scenes.builtin.knobs import Knob, built_in
 from interreflect.scenes.builtin.shapes import Shape, box, flipped, join, mesh
-from interreflect.scenes.checks import number
 from interreflect.scenes.values import Camera, Material, Mesh, PointLight, Scene
 
 HEIGHT, HALF_WIDTH, SKIN = 2.4, 1.0, 0.3  # metres
@@ -13,23 +15,23 @@ FLOOR = Material(name="floor", albedo=(0.45, 0.2, 0.12))
 PILASTER = Material(name="pilaster", albedo=(0.25, 0.4, 0.55))
 
 
-def corridors(thickness: float = 0.3, length: float = 12) -> Scene:
+@built_in
+def corridors(
+    thickness: Annotated[float, Knob("of the slab between the corridors", 0, 2, open_minimum=True, unit="m")] = 0.3,
+    length: Annotated[float, Knob("of both corridors", 4, 100, unit="m")] = 12.0,
+) -> Scene:
     """Two closed corridors, stacked; point lights in the lower one. The truth of the upper one is 0.
 
-    thickness: of the slab between them, metres, in (0, 2]. length: metres, in [4, 100].
     Cameras "lit" (lower) and "dark" (upper) look along them from the same place.
-    ValueError names the knob, its bound and its value.
     """
-    slab = number("corridors.thickness", thickness, 0, 2, open_low=True)
-    half = number("corridors.length", length, 4, 100) / 2
-    upper = HEIGHT + slab
+    half = length / 2
+    upper = HEIGHT + thickness
     hull = box((-half - SKIN, -SKIN, -HALF_WIDTH - SKIN), (half + SKIN, upper + HEIGHT + SKIN, HALF_WIDTH + SKIN))
     rooms = [flipped(box((-half, y, -HALF_WIDTH), (half, y + HEIGHT, HALF_WIDTH))) for y in (0, upper)]
     meshes = [mesh(join([hull, *rooms]), WALL), *(part for y in (0, upper) for part in _furniture(y, half))]
     lamps = [PointLight(position=(x, HEIGHT - 0.3, 0), intensity=(2.4, 2.1, 1.7)) for x in (-0.6 * half, 0, 0.6 * half)]
     cameras = {name: _camera(y, half) for name, y in (("lit", 0), ("dark", upper))}
-    name = f"corridors(thickness={slab:g}, length={2 * half:g})"
-    return Scene(name=name, meshes=meshes, lights=lamps, cameras=cameras)
+    return Scene(meshes=meshes, lights=lamps, cameras=cameras)
 
 
 def _furniture(y: float, half: float) -> list[Mesh]:

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from typing import Annotated
+
 import numpy as np
 from numpy.typing import NDArray
 
+from interreflect.scenes.builtin.knobs import Knob, built_in
 from interreflect.scenes.builtin.shapes import Shape, box, join, mesh, quad, sphere, triple
-from interreflect.scenes.checks import choice, number
 from interreflect.scenes.values import Camera, Material, Mesh, Scene
 
+LOBES = ("ggx", "phong", "blinn-phong")
 ROUGHNESS = (0.1, 0.2, 0.32, 0.5)  # front to back
 RADII = (0.04, 0.12, 0.3, 0.75)  # left to right
 TINTS = ((1.0, 0.75, 0.5), (0.65, 1.0, 0.6), (0.6, 0.75, 1.0), (1.0, 0.65, 0.9))
@@ -16,17 +19,18 @@ EYE = np.array([0.0, 4.2, 10.5])
 LAMPS = [np.array([x, 4.6, -3.0]) for x in (-3.3, -1.4, 0.7, 3.2)]
 
 
-def glossy_plates(lobe: str = "ggx", specular: float = 0.6) -> Scene:
+@built_in
+def glossy_plates(
+    lobe: Annotated[str, Knob("of the plates; Phong exponents match the roughness", choices=LOBES)] = "ggx",
+    specular: Annotated[float, Knob("reflectance of the lobe", 0, 0.9)] = 0.6,
+) -> Scene:
     """Four plates, each rougher than the one before it, that mirror four round lamps of equal flux into the camera "front".
 
-    lobe: "ggx", "phong" or "blinn-phong" (exponent 2 / alpha^2 - 2, to match the roughness).
-    specular: reflectance of the lobe, in [0, 0.9]. ValueError names the knob, its bound and its value.
+    Exponents are 2 / alpha^2 - 2.
     """
-    choice("glossy_plates.lobe", lobe, ("ggx", "phong", "blinn-phong"))
-    s = number("glossy_plates.specular", specular, 0, 0.9)
-    meshes = [_stage(), *(_plate(k, _metal(k, lobe, s)) for k in range(len(ROUGHNESS))), *map(_lamp, range(len(RADII)))]
+    meshes = [_stage(), *(_plate(k, _metal(k, lobe, specular)) for k in range(len(ROUGHNESS))), *map(_lamp, range(len(RADII)))]
     camera = Camera(position=triple(EYE), target=(0, 1.85, 0), fov_x=58)
-    return Scene(name=f"glossy_plates(lobe={lobe!r}, specular={s:g})", meshes=meshes, cameras={"front": camera})
+    return Scene(meshes=meshes, cameras={"front": camera})
 
 
 def _stage() -> Mesh:

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from typing import Annotated
+
 import numpy as np
 
+from interreflect.scenes.builtin.knobs import Knob, built_in
 from interreflect.scenes.builtin.shapes import Shape, box, join, mesh, moved, quad, sphere
-from interreflect.scenes.checks import number, whole
+from interreflect.scenes.checks import number
 from interreflect.scenes.values import Camera, DirectionalLight, EnvironmentLight, Material, Mesh, Scene
 
 WIDTH, HEIGHT, DEPTH = 4.0, 2.6, 3.0  # metres
@@ -14,24 +17,25 @@ FLOOR = Material(name="floor", albedo=(0.5, 0.34, 0.2))
 IRON = Material(name="iron", albedo=(0.08, 0.08, 0.09))
 
 
-def grille(bars: int = 24, width: float = 0.02) -> Scene:
-    """A room open at its front (+z) behind a grille: `bars` upright bars, and lying ones that make squares; sun and sky.
+@built_in
+def grille(
+    bars: Annotated[int, Knob("upright ones, over 4 metres", 2, 200)] = 24,
+    width: Annotated[float, Knob("of a bar; also below 0.9 of the way from bar to bar", 0, 0.5, open_minimum=True, unit="m")] = 0.02,
+) -> Scene:
+    """A room open at its front (+z) behind a grille: upright bars, and lying ones that make squares; sun and sky.
 
-    bars: from 2 to 200. width: of a bar, metres, in (0, 0.5] and below the distance from bar to bar.
     At 1280 x 720 a bar of 0.004 is about a pixel wide. Cameras "front" and, one step to the side, "beside".
-    ValueError names the knob, its bound and its value.
     """
-    count = whole("grille.bars", bars, 2, 200)
-    spacing = WIDTH / count
-    w = number("grille.width", width, 0, min(0.5, 0.9 * spacing), open_low=True)
-    meshes = [*_room(), *_furniture(), mesh(_grid(count, spacing, w), IRON)]
+    spacing = WIDTH / bars
+    number("grille.width", width, 0, min(0.5, 0.9 * spacing), open_low=True)
+    meshes = [*_room(), *_furniture(), mesh(_grid(bars, spacing, width), IRON)]
     sun = DirectionalLight(direction=(0.45, -0.7, -0.75), irradiance=(16, 14.5, 12))
     sky = EnvironmentLight(radiance=(0.5, 0.65, 0.9))
     cameras = {
         "front": Camera(position=(-0.5, 1.5, 3.4), target=(0.1, 1.2, 0), fov_x=62),
         "beside": Camera(position=(-0.2, 1.5, 3.4), target=(0.4, 1.2, 0), fov_x=62),
     }
-    return Scene(name=f"grille(bars={count}, width={w:g})", meshes=meshes, lights=[sun, sky], cameras=cameras)
+    return Scene(meshes=meshes, lights=[sun, sky], cameras=cameras)
 
 
 def _room() -> list[Mesh]:

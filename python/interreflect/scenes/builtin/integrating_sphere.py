@@ -2,31 +2,32 @@
 
 from __future__ import annotations
 
+from typing import Annotated
+
 import numpy as np
 
+from interreflect.scenes.builtin.knobs import Knob, built_in
 from interreflect.scenes.builtin.shapes import flipped, mesh, sphere
-from interreflect.scenes.checks import choice, number
 from interreflect.scenes.values import Camera, Light, Material, PointLight, Scene, SpotLight
 
 
-def integrating_sphere(albedo: float = 0.5, radius: float = 1, flux: float = 1, light: str = "spot", cap: float = 30) -> Scene:
+@built_in
+def integrating_sphere(
+    albedo: Annotated[float, Knob("of the wall", 0, 0.999)] = 0.5,
+    radius: Annotated[float, Knob("of the sphere", 0, open_minimum=True)] = 1.0,
+    flux: Annotated[float, Knob("of the light", 0, unit="W")] = 1.0,
+    light: Annotated[str, Knob("at half the radius with a hard edge, or at the centre", choices=("spot", "point"))] = "spot",
+    cap: Annotated[float, Knob("half angle of the spot", 0, 80, open_minimum=True, unit="degrees")] = 30.0,
+) -> Scene:
     """A hollow sphere around the origin: light reflected once has the irradiance albedo flux / (4 pi radius^2) everywhere.
 
-    albedo: in [0, 0.999]. radius: above 0. flux: of the light, W, at least 0.
-    light: "spot" (at half the radius, with a hard edge) or "point" (at the centre: direct light is even, too).
-    cap: half angle of the spot, degrees, in (0, 80]. One camera, "view", whose picture holds the spot's cap and dark wall.
-    ValueError names the knob, its bound and its value.
+    Under the point light, direct light is even, too. One camera, "view", whose picture holds the spot's cap and dark wall.
     """
-    rho = number("integrating_sphere.albedo", albedo, 0, 0.999)
-    r = number("integrating_sphere.radius", radius, 0, open_low=True)
-    phi = number("integrating_sphere.flux", flux, 0)
-    half_angle = number("integrating_sphere.cap", cap, 0, 80, open_low=True)
-    choice("integrating_sphere.light", light, ("spot", "point"))
-    wall = Material(name="wall", albedo=(rho,) * 3)
+    r = radius
+    wall = Material(name="wall", albedo=(albedo,) * 3)
     camera = Camera(position=(-0.5 * r, 0.2 * r, 0.1 * r), target=(r, 0, 0), fov_x=80, size=(512, 512))
-    name = f"integrating_sphere(albedo={rho:g}, radius={r:g}, flux={phi:g}, light={light!r}, cap={half_angle:g})"
-    lights = [_point(phi) if light == "point" else _spot(phi, r, half_angle)]
-    return Scene(name=name, meshes=[mesh(flipped(sphere(r)), wall)], lights=lights, cameras={"view": camera})
+    lights = [_point(flux) if light == "point" else _spot(flux, r, cap)]
+    return Scene(meshes=[mesh(flipped(sphere(r)), wall)], lights=lights, cameras={"view": camera})
 
 
 def _point(flux: float) -> Light:

@@ -2,34 +2,34 @@
 
 from __future__ import annotations
 
+from typing import Annotated
+
 import numpy as np
 from numpy.typing import NDArray
 
+from interreflect.scenes.builtin.knobs import Knob, built_in
 from interreflect.scenes.builtin.shapes import Shape, box, flipped, grid_triangles, join, mesh, quad, rotation_about_y, sphere
-from interreflect.scenes.checks import number, whole
 from interreflect.scenes.values import Camera, Material, Mesh, Scene, Texture
 
 WHITE = Material(name="white", albedo=(0.75, 0.75, 0.75))
 SIZE = 256  # texels along a side of the emission map
 
 
-def textured_light_box(radiance: float = 12, grating: int = 0) -> Scene:
+@built_in
+def textured_light_box(
+    radiance: Annotated[float, Knob("of the pattern's lit texels", 0, unit="W/(m^2 sr)")] = 12.0,
+    grating: Annotated[int, Knob("bars each way of a grid below the ceiling that lights the bodies in stripes", 0, 64)] = 0,
+) -> Scene:
     """A white box of 2 x 2 x 2 units on y = 0 whose whole ceiling emits through a map, and two bodies of their own in it.
 
-    Stands in for the box of figure 7 in Jendersie et al., where the bodies take their light from a grid of caches and the walls
-    from light maps.
-    radiance: of the pattern's lit texels, at least 0. grating: bars each way, from 0 (none) to 64, hung below the ceiling, so
-    that the bodies, "ball" and "torus", are lit through a grid. Camera "front".
-    ValueError names the knob, its bound and its value.
+    Stands in for the box of figure 7 in Jendersie et al., where the bodies, "ball" and "torus", take their light from a grid of
+    caches and the walls from light maps. Camera "front".
     """
-    strength = number("textured_light_box.radiance", radiance, 0)
-    bars = whole("textured_light_box.grating", grating, 0, 64)
-    meshes = [*_room(), _ceiling(strength), *_bodies()]
-    if bars:
-        meshes.append(mesh(_grating(bars), Material(name="grating", albedo=(0.3, 0.3, 0.3))))
+    meshes = [*_room(), _ceiling(radiance), *_bodies()]
+    if grating:
+        meshes.append(mesh(_grating(grating), Material(name="grating", albedo=(0.3, 0.3, 0.3))))
     camera = Camera(position=(0.12, 0.95, 0.98), target=(-0.04, 0.92, -1), fov_x=96, size=(512, 512))
-    name = f"textured_light_box(radiance={strength:g}, grating={bars})"
-    return Scene(name=name, meshes=meshes, cameras={"front": camera})
+    return Scene(meshes=meshes, cameras={"front": camera})
 
 
 def _room() -> list[Mesh]:

@@ -2,33 +2,34 @@
 
 from __future__ import annotations
 
+from typing import Annotated
+
+from interreflect.scenes.builtin.knobs import Knob, built_in
 from interreflect.scenes.builtin.shapes import Shape, box, flipped, join, mesh, moved, rotation_about_y
-from interreflect.scenes.checks import number
 from interreflect.scenes.values import Camera, Material, PointLight, Scene
 
 HULL = 0.4, 0.2, 0.36  # half length, half width and height of both rooms together
 SKIN = 0.02  # of all walls but the one between the rooms
 
 
-def thin_wall(thickness: float = 0.02, rotation: float = 0, offset: float = 0) -> Scene:
+@built_in
+def thin_wall(
+    thickness: Annotated[float, Knob("of the wall between the rooms", 0, 0.2, open_minimum=True, unit="extents")] = 0.02,
+    rotation: Annotated[float, Knob("of both rooms about the vertical", -180, 180, unit="degrees")] = 0.0,
+    offset: Annotated[float, Knob("of the wall towards the dark room", -0.1, 0.1, unit="extents")] = 0.0,
+) -> Scene:
     """Two closed rooms with one wall between them, a point light in one. The truth of the dark room is 0.
 
     Lengths are in extents of the scene: a base plate keeps the longest side at 1 and the bounds the same for all knobs, so that
-    a grid of n cells has voxels of 1 / n.
-    thickness: of the wall, in (0, 0.2]. rotation: of the rooms about the vertical, degrees, in [-180, 180].
-    offset: of the wall towards the dark room, in [-0.1, 0.1].
-    Cameras "lit" and "dark" stand in the rooms, mirrored at the wall. ValueError names the knob, its bound and its value.
+    a grid of n cells has voxels of 1 / n. Cameras "lit" and "dark" stand in the rooms, mirrored at the wall.
     """
-    t = number("thin_wall.thickness", thickness, 0, 0.2, open_low=True)
-    angle = number("thin_wall.rotation", rotation, -180, 180)
-    shift = number("thin_wall.offset", offset, -0.1, 0.1)
-    rooms = moved(_rooms(shift - t / 2, shift + t / 2), turn=angle)
+    angle = rotation
+    rooms = moved(_rooms(offset - thickness / 2, offset + thickness / 2), turn=angle)
     plate = box((-0.5, -SKIN, -0.5), (0.5, 0, 0.5))
     stone = Material(name="stone", albedo=(0.7, 0.7, 0.7))
     lamp = PointLight(position=_turned((-0.24, 0.27, 0.02), angle), intensity=(0.1, 0.09, 0.08))
     cameras = {name: _camera(side, angle) for name, side in (("lit", -1), ("dark", 1))}
-    name = f"thin_wall(thickness={t:g}, rotation={angle:g}, offset={shift:g})"
-    return Scene(name=name, meshes=[mesh(rooms, stone), mesh(plate, stone)], lights=[lamp], cameras=cameras)
+    return Scene(meshes=[mesh(rooms, stone), mesh(plate, stone)], lights=[lamp], cameras=cameras)
 
 
 def _rooms(wall_begin: float, wall_end: float) -> Shape:
