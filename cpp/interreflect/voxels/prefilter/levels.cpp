@@ -231,16 +231,14 @@ LevelView view(Pyramid::Level& level) {
             level.row() * 4,     level.slice() * 4, level.volume() * 4};
 }
 
+/// The vectors as floats, three each; there may be none.
+const float* floats(const Buffer<vec3>& vectors) { return reinterpret_cast<const float*>(vectors.data()); }
+
 VoxelView view(const LitVoxels& lit, float scale) {
     const VoxelGrid& grid = *lit.grid;
-    return {grid.cell.data(),
-            &lit.radiance.data()->x,
-            lit.back.empty() ? nullptr : &lit.back.data()->x,
-            &grid.normal.data()->x,
-            grid.opacity.data(),
-            0,
-            grid.size(),
-            1.0f / scale};
+    return {grid.cell.data(),    floats(lit.radiance), lit.back.empty() ? nullptr : floats(lit.back),
+            floats(grid.normal), grid.opacity.data(),  0,
+            grid.size(),         1.0f / scale};
 }
 
 /// The voxels in slices 2 z and 2 z + 1.
