@@ -34,21 +34,25 @@ class TilePixels {
     std::size_t count_ = 0, hits_ = 0, tile_;
 };
 
-/// Calls visit(pixel) for every pixel of a tile that hit a surface, in the same order.
+/// Calls visit(pixel) for every pixel of a tile, in the same order.
 template <class Visit>
-void for_each_hit(const GBuffer& g, const Tile& tile, const Visit& visit) {
+void for_each_pixel(const Tile& tile, int width, const Visit& visit) {
     constexpr int block = 4;
     for (int y0 = tile.y0; y0 < tile.y1; y0 += block)
         for (int x0 = tile.x0; x0 < tile.x1; x0 += block)
             for (int y = y0; y < std::min(y0 + block, tile.y1); ++y)
-                for (int x = x0; x < std::min(x0 + block, tile.x1); ++x) {
-                    const std::size_t pixel = static_cast<std::size_t>(y) * g.width + x;
-                    if (g.hit(pixel)) visit(pixel);
-                }
+                for (int x = x0; x < std::min(x0 + block, tile.x1); ++x) visit(static_cast<std::size_t>(y) * width + x);
+}
+/// The same for those that hit a surface.
+template <class Visit>
+void for_each_hit(const GBuffer& g, const Tile& tile, const Visit& visit) {
+    for_each_pixel(tile, g.width, [&](std::size_t pixel) {
+        if (g.hit(pixel)) visit(pixel);
+    });
 }
 
-inline std::size_t tile_count(const GBuffer& g) {
-    const auto along = [](int pixels) { return static_cast<std::size_t>((pixels + tile_side - 1) / tile_side); };
+inline std::size_t tile_count(const GBuffer& g, int side = tile_side) {
+    const auto along = [side](int pixels) { return static_cast<std::size_t>((pixels + side - 1) / side); };
     return along(g.width) * along(g.height);
 }
 

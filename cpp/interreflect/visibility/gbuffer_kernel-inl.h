@@ -6,6 +6,8 @@
 #define INTERREFLECT_GBUFFER_KERNEL
 #endif
 
+#include <hwy/cache_control.h>
+
 #include "visibility/texture_kernel-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -256,30 +258,95 @@ HWY_INLINE std::uint32_t plain_lanes(const GBufferJob& job, const RayPacket& hit
     return plain;
 }
 
-HWY_INLINE void trace_packet(const GBufferJob& job, const Tile& tile, int x0, int y0) {
+/// A packet between two steps. Several are on their way at once: each step asks the memory for what the next one reads.
+struct Slot {
     RayPacket rays;
     Shaded s;
-    fill_rays(job.rays, x0, y0, rays, s);
-    std::uint32_t active = 0;
-    for (int k = 0; k < packet; ++k) active |= static_cast<std::uint32_t>(x0 + k % 4 < tile.x1 && y0 + k / 4 < tile.y1) << k;
-    job.intersector.nearest(rays, active);
-    const std::uint32_t plain = plain_lanes(job, rays, active);
-    if (plain != 0) {
-        interpolate(*job.scene.geometry->arrays, rays, plain, s);
-        look_up_materials(job, s);
-        shade_geometry(rays, job.pixel_area, s);
-        shade_materials(job, plain, s);
-        store_packet(job, tile, x0, y0, rays, s);
+    std::uint32_t active, plain;
+};
+
+HWY_INLINE void trace_rays(const GBufferJob& job, const Tile& tile, int x0, int y0, Slot& slot) {
+    fill_rays(job.rays, x0, y0, slot.rays, slot.s);
+    slot.active = 0;
+    for (int k = 0; k < packet; ++k) slot.active |= static_cast<std::uint32_t>(x0 + k % 4 < tile.x1 && y0 + k / 4 < tile.y1) << k;
+    job.intersector.nearest(slot.rays, slot.active);
+    const GeometryArrays& arrays = *job.scene.geometry->arrays;
+    for (int k = 0; k < packet; ++k) {
+        if (!slot.rays.met(k)) continue;
+        hwy::Prefetch(arrays.triangles.data() + slot.rays.triangle[k]);
+        hwy::Prefetch(arrays.materials.data() + slot.rays.triangle[k]);
     }
-    for (std::uint32_t left = active & ~plain; left != 0; left &= left - 1) {
+}
+
+HWY_INLINE void ask_for_vertices(const GBufferJob& job, Slot& slot) {
+    const GeometryArrays& arrays = *job.scene.geometry->arrays;
+    const auto* triangles = reinterpret_cast<const std::uint32_t*>(arrays.triangles.data());
+    slot.plain = plain_lanes(job, slot.rays, slot.active);
+    for (int k = 0; k < packet; ++k) {
+        if (((slot.plain >> k) & 1U) == 0) continue;
+        const std::uint32_t* corners = triangles + 3 * std::size_t{slot.rays.triangle[k]};
+        for (int c = 0; c < 3; ++c) hwy::Prefetch(arrays.vertices.data() + corners[c]);
+    }
+}
+
+/// The texels that the finer of the two levels needs; the coarser one's are four times fewer and mostly there already.
+HWY_INLINE void ask_for_texels(const KernelMaterial& material, const Shaded& s) {
+    const Tag d;
+    const hn::RebindToSigned<Tag> di;
+    alignas(64) std::int32_t index[packet], below[packet];
+    const auto* table = reinterpret_cast<const std::int32_t*>(material.levels);
+    const Vector size = hn::Set(d, static_cast<float>(material.levels[0].width) * static_cast<float>(material.levels[0].height));
+    for (int k = 0; k < packet; k += static_cast<int>(hn::Lanes(d))) {
+        const Vector texels = hn::Max(hn::Mul(hn::Load(d, s.area + k), size), hn::Set(d, 1.0f));
+        // Half the binary exponent is the level.
+        const auto exponent = hn::Sub(hn::ShiftRight<23>(hn::BitCast(di, texels)), hn::Set(di, 127));
+        const auto level = hn::Min(hn::ShiftRight<1>(exponent), hn::Set(di, material.level_count - 1));
+        const auto at = hn::Add(hn::Add(level, level), level);
+        const auto width = hn::GatherIndex(di, table, at), height = hn::GatherIndex(di, table + 1, at);
+        const Vector u = wrap_lanes(d, hn::Load(d, s.u + k)), v = wrap_lanes(d, hn::Load(d, s.v + k));
+        const auto x = hn::ConvertTo(di, hn::Mul(u, hn::ConvertTo(d, width)));
+        const auto y = hn::ConvertTo(di, hn::Mul(v, hn::ConvertTo(d, height)));
+        const auto texel = hn::Add(hn::GatherIndex(di, table + 2, at), hn::Add(hn::Mul(y, width), x));
+        hn::Store(texel, di, index + k);
+        hn::Store(hn::Max(hn::Sub(texel, width), hn::Zero(di)), di, below + k);
+    }
+    for (int k = 0; k < packet; ++k) {
+        hwy::Prefetch(material.texels + index[k]);
+        hwy::Prefetch(material.texels + below[k]);
+    }
+}
+
+HWY_INLINE void shade_surfaces(const GBufferJob& job, Slot& slot) {
+    if (slot.plain == 0) return;
+    interpolate(*job.scene.geometry->arrays, slot.rays, slot.plain, slot.s);
+    look_up_materials(job, slot.s);
+    shade_geometry(slot.rays, job.pixel_area, slot.s);
+    const KernelMaterial& material = job.materials[slot.s.material[hwy::Num0BitsBelowLS1Bit_Nonzero32(slot.plain)]];
+    if (material.texels != nullptr) ask_for_texels(material, slot.s);
+}
+
+HWY_INLINE void finish_pixels(const GBufferJob& job, const Tile& tile, int x0, int y0, Slot& slot) {
+    if (slot.plain != 0) {
+        shade_materials(job, slot.plain, slot.s);
+        store_packet(job, tile, x0, y0, slot.rays, slot.s);
+    }
+    for (std::uint32_t left = slot.active & ~slot.plain; left != 0; left &= left - 1) {
         const int k = static_cast<int>(hwy::Num0BitsBelowLS1Bit_Nonzero32(left));
-        store_gbuffer_pixel(job, x0 + k % 4, y0 + k / 4, rays.hit(k));
+        store_gbuffer_pixel(job, x0 + k % 4, y0 + k / 4, slot.rays.hit(k));
     }
 }
 
 void trace_tile(const GBufferJob& job, const Tile& tile) {
+    constexpr int together = 4;  // 24 KiB, half of a first-level cache
+    Slot slots[together];
     for (int y = tile.y0; y < tile.y1; y += 4)
-        for (int x = tile.x0; x < tile.x1; x += 4) trace_packet(job, tile, x, y);
+        for (int begin = tile.x0; begin < tile.x1; begin += 4 * together) {
+            const int count = tile.x1 - begin < 4 * together ? (tile.x1 - begin + 3) / 4 : together;
+            for (int i = 0; i < count; ++i) trace_rays(job, tile, begin + 4 * i, y, slots[i]);
+            for (int i = 0; i < count; ++i) ask_for_vertices(job, slots[i]);
+            for (int i = 0; i < count; ++i) shade_surfaces(job, slots[i]);
+            for (int i = 0; i < count; ++i) finish_pixels(job, tile, begin + 4 * i, y, slots[i]);
+        }
 }
 
 }  // namespace HWY_NAMESPACE

@@ -86,12 +86,12 @@ void trace_positional_light(int number, const Tile& tile, ShadowPackets& packets
 /// A directional light is the same at every pixel, and most surfaces are diffuse: what faces away costs a look at two normals.
 void trace_directional_light(const LightSampler::Delta& sun, const Tile& tile, ShadowPackets& packets, const Scene& scene,
                              const GBuffer& g) {
-    for_each_hit(g, tile, [&](std::size_t pixel) {
-        const float cosine = glm::dot(g.normal[pixel], sun.direction);
+    for_each_pixel(tile, g.width, [&](std::size_t pixel) {
+        const float cosine = glm::dot(g.normal[pixel], sun.direction);  // 0 where nothing was hit
         if (cosine <= 0.0f || glm::dot(g.geometric_normal[pixel], sun.direction) <= 0.0f) return;
         const bool glossy = max_component(g.specular[pixel]) > 0.0f;
-        const vec3 reflected =
-            glossy ? reflected_light(PixelSurface(g, scene, pixel), sun) : g.albedo[pixel] * sun.irradiance * (cosine / pi);
+        const vec3 reflected = glossy ? reflected_light(PixelSurface(g, scene, pixel), sun)
+                                      : g.albedo[pixel] * sun.irradiance * (cosine * (1.0f / pi));
         if (!(max_component(reflected) > 0.0f)) return;
         const vec3 origin = g.position[pixel] + g.geometric_normal[pixel] * g.offset[pixel];
         packets.add({origin, 0.0f, sun.direction}, reflected, pixel);
@@ -151,9 +151,11 @@ void add_emitters(DirectLight& light, int samples, const Scene& scene, const Int
 DirectLight shadow(const TracedShadows& technique, const Scene& scene, const Intersector& intersector, const LightSampler& lights,
                    const GBuffer& g, std::uint32_t seed) {
     DirectLight result(g.width, g.height);
-    std::vector<Counts> counts(tile_count(g));
+    // Wide tiles: every image is read in long runs of its rows.
+    constexpr int side = 64;
+    std::vector<Counts> counts(tile_count(g, side));
     const int directional = static_cast<int>(scene.directional_lights.size()), positional = lights.delta_count() - directional;
-    parallel_tiles(g.width, g.height, tile_side, [&](const Tile& tile) {
+    parallel_tiles(g.width, g.height, side, [&](const Tile& tile) {
         for (int y = tile.y0; y < tile.y1; ++y) {
             vec3* const row = &result.radiance[static_cast<std::size_t>(y) * g.width];
             std::fill(row + tile.x0, row + tile.x1, vec3(0));
