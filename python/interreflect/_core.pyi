@@ -1011,12 +1011,11 @@ def prefilter(technique: VolumeCoverage | SurfaceCoverage | Anisotropic, lit: Li
     """
     Radiance and opacity of ever larger voxels.
     """
-def shade(gbuffer: GBuffer, gathered: GatheredLight, glossy: GlossyLight | None=None) -> numpy.typing.NDArray[numpy.float32]:
-def reflective_shadow_map(scene: ..., light: typing.SupportsInt | typing.SupportsIndex, size: typing.SupportsInt | typing.SupportsIndex) -> ReflectiveShadowMap:
+def reflective_shadow_map(scene: Scene, light: typing.SupportsInt | typing.SupportsIndex, size: typing.SupportsInt | typing.SupportsIndex) -> ReflectiveShadowMap:
     """
     What a spot or directional light sees; `light` counts point, then spot, then directional lights.
     """
-def shade(gbuffer: GBuffer, gathered: GatheredLight, glossy: GlossyLight=None) -> numpy.typing.NDArray[numpy.float32]:
+def shade(gbuffer: GBuffer, gathered: GatheredLight, glossy: GlossyLight | None=None) -> numpy.typing.NDArray[numpy.float32]:
     """
     (height, width, 3): indirect light that leaves the pixels' surfaces towards the camera.
     """
