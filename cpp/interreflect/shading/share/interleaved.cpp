@@ -27,30 +27,58 @@ struct Planes {
     alignas(64) float plane[count][padded * pad_row + 64];
 };
 
-/// Pixels outside the picture and pixels that hit nothing get normal 0, which no normal test passes.
+/// Spreads the pixels [x0, x1) of one row over the planes from `at` on. Those that hit nothing get normal 0, which no test
+/// passes.
+void load_row(const GBuffer& gbuffer, const Buffer<vec4>& partial, std::size_t row, int x0, int x1, int at, Planes& to) {
+    const hn::ScalableTag<float> d;
+    const hn::RebindToUnsigned<decltype(d)> du;
+    const int lanes = static_cast<int>(hn::Lanes(d));
+    const auto* position = reinterpret_cast<const float*>(gbuffer.position.data() + row);
+    const auto* normal = reinterpret_cast<const float*>(gbuffer.normal.data() + row);
+    const auto* value = reinterpret_cast<const float*>(partial.data() + row);
+    int x = x0;
+    for (; x + lanes <= x1; x += lanes) {
+        const int to_at = at + x - x0;
+        const auto hit = hn::RebindMask(d, hn::Ne(hn::LoadU(du, gbuffer.triangle.data() + row + x), hn::Set(du, no_hit)));
+        auto a = hn::Zero(d), b = a, c = a, e = a;
+        const auto keep = [&](int plane, decltype(a) v)
+                              HWY_ATTR { hn::StoreU(hn::IfThenElseZero(hit, v), d, to.plane[plane] + to_at); };
+        hn::LoadInterleaved3(d, position + 3 * x, a, b, c);
+        keep(Planes::px, a), keep(Planes::py, b), keep(Planes::pz, c);
+        hn::LoadInterleaved3(d, normal + 3 * x, a, b, c);
+        keep(Planes::nx, a), keep(Planes::ny, b), keep(Planes::nz, c);
+        hn::LoadInterleaved4(d, value + 4 * x, a, b, c, e);
+        keep(Planes::r, a), keep(Planes::g, b), keep(Planes::b, c), keep(Planes::a, e);
+    }
+    for (; x < x1; ++x) {
+        const bool hit = gbuffer.triangle[row + x] != no_hit;
+        for (int k = 0; k < 3; ++k) {
+            to.plane[Planes::px + k][at + x - x0] = hit ? position[3 * x + k] : 0.0f;
+            to.plane[Planes::nx + k][at + x - x0] = hit ? normal[3 * x + k] : 0.0f;
+        }
+        for (int k = 0; k < 4; ++k) to.plane[Planes::r + k][at + x - x0] = hit ? value[4 * x + k] : 0.0f;
+    }
+}
+
+/// A tile and its halo; outside the picture normals are 0.
 void load_tile(const GBuffer& gbuffer, const Buffer<vec4>& partial, const float* weights, int block_width, int block_height,
                const Tile& tile, int halo, Planes& to) {
+    const int left = tile.x0 - halo < 0 ? 0 : tile.x0 - halo;
+    const int right = tile.x1 + halo > gbuffer.width ? gbuffer.width : tile.x1 + halo;
     for (int y = tile.y0 - halo; y < tile.y1 + halo; ++y) {
-        const int row = (y - tile.y0 + largest_halo) * pad_row + largest_halo;
-        for (int x = tile.x0 - halo; x < tile.x1 + halo; ++x) {
-            const int at = row + x - tile.x0;
-            const bool inside = x >= 0 && y >= 0 && x < gbuffer.width && y < gbuffer.height;
-            const std::size_t pixel = inside ? static_cast<std::size_t>(y) * gbuffer.width + x : 0;
-            const bool hit = inside && gbuffer.triangle[pixel] != no_hit;
-            const vec3* position = gbuffer.position.data() + pixel;
-            const vec3* normal = gbuffer.normal.data() + pixel;
-            const vec4* value = partial.data() + pixel;
-            to.plane[Planes::px][at] = hit ? position->x : 0.0f;
-            to.plane[Planes::py][at] = hit ? position->y : 0.0f;
-            to.plane[Planes::pz][at] = hit ? position->z : 0.0f;
-            to.plane[Planes::nx][at] = hit ? normal->x : 0.0f;
-            to.plane[Planes::ny][at] = hit ? normal->y : 0.0f;
-            to.plane[Planes::nz][at] = hit ? normal->z : 0.0f;
-            to.plane[Planes::r][at] = hit ? value->x : 0.0f;
-            to.plane[Planes::g][at] = hit ? value->y : 0.0f;
-            to.plane[Planes::b][at] = hit ? value->z : 0.0f;
-            to.plane[Planes::a][at] = hit ? value->w : 0.0f;
-            to.plane[Planes::weight][at] = hit ? weights[x % block_width + block_width * (y % block_height)] : 0.0f;
+        const int row = (y - tile.y0 + largest_halo) * pad_row + largest_halo - tile.x0;  // planes' index of x = 0
+        const bool inside = y >= 0 && y < gbuffer.height;
+        if (inside) load_row(gbuffer, partial, static_cast<std::size_t>(y) * gbuffer.width, left, right, row + left, to);
+        const auto clear = [&](int x) {
+            for (int plane = Planes::nx; plane < Planes::count; ++plane) to.plane[plane][row + x] = 0.0f;
+        };
+        for (int x = tile.x0 - halo; x < (inside ? left : tile.x1 + halo); ++x) clear(x);
+        for (int x = inside ? right : tile.x1 + halo; x < tile.x1 + halo; ++x) clear(x);
+        if (!inside) continue;
+        const float* row_weights = weights + block_width * (y % block_height);
+        for (int x = left, phase = left % block_width; x < right; ++x) {
+            to.plane[Planes::weight][row + x] = row_weights[phase];
+            phase = phase + 1 == block_width ? 0 : phase + 1;
         }
     }
 }

@@ -61,8 +61,9 @@ Counts march_width(const Work& work, std::span<const Reflection> cones, ConeBatc
                    Buffer<vec4>& sky) {
     batch.count = static_cast<int>(cones.size());
     for (int i = 0; i < batch.count; ++i) {
-        set_cone(batch, i, cones[i].surface, work.gbuffer.geometric_normal[cones[i].pixel], work.normal_offset,
-                 cones[i].direction, work.own_surface);
+        const vec3 normal = work.gbuffer.geometric_normal[cones[i].pixel];
+        set_start(batch, i, cones[i].surface, normal, work.normal_offset, work.own_surface);
+        set_direction(batch, i, normal, cones[i].direction);
     }
     const ConeCounts done = march_cones(work.pyramid, work.schedules[cones.front().width], work.cut_off, batch);
     for (int i = 0; i < batch.count; ++i) {

@@ -36,57 +36,76 @@ struct Work {
     bool own_surface;
 };
 
-/// The pixels of one phase in one tile, ready to march any cone from.
+constexpr int capacity = ConeBatch::capacity;
+
+/// The pixels of one phase in one tile, ready to send any cone: what depends on its direction is linear in it.
 struct Receivers {
+    enum { dx, dy, dz, slope, axis_direction, rows };
     int count = 0;
-    int pixel[ConeBatch::capacity];
-    vec3 surface[ConeBatch::capacity], facing[ConeBatch::capacity];  // voxels; geometric normal
-    vec3 tangent[ConeBatch::capacity], bitangent[ConeBatch::capacity], normal[ConeBatch::capacity];
+    int pixel[capacity];
+    float per_axis[rows][3][capacity];  // of each row, by tangent, bitangent and normal
+    float sum[7][capacity];             // radiance, openness, sky
 };
 
-void find_receivers(const Work& work, const Tile& tile, int phase, Receivers& found) {
+void add_receiver(const Work& work, int pixel, Receivers& to, ConeBatch& batch) {
     const GBuffer& g = work.gbuffer;
+    const int i = to.count++;
+    to.pixel[i] = pixel;
+    const vec3 facing = g.geometric_normal[pixel];
+    const Frame frame(g.normal[pixel]);
+    const vec3 axes[3] = {frame.tangent, frame.bitangent, frame.normal};
+    for (int a = 0; a < 3; ++a) {
+        for (int k = 0; k < 3; ++k) to.per_axis[Receivers::dx + k][a][i] = axes[a][k];
+        to.per_axis[Receivers::slope][a][i] = glm::dot(axes[a], facing);
+        to.per_axis[Receivers::axis_direction][a][i] = axes[a][longest_axis(facing)];
+    }
+    for (auto& row : to.sum) row[i] = 0.0f;
+    set_start(batch, i, work.pyramid.domain.to_voxels(g.position[pixel]), facing, work.normal_offset, work.own_surface);
+}
+
+void find_receivers(const Work& work, const Tile& tile, int phase, Receivers& found, ConeBatch& batch) {
     found.count = 0;
     // Tiles begin on a block's border.
     for (int y = tile.y0 + phase / work.block.width; y < tile.y1; y += work.block.height)
         for (int x = tile.x0 + phase % work.block.width; x < tile.x1; x += work.block.width) {
-            const int pixel = y * g.width + x;
-            if (!g.hit(pixel)) continue;
-            const Frame frame(g.normal[pixel]);
-            const int i = found.count++;
-            found.pixel[i] = pixel;
-            found.surface[i] = work.pyramid.domain.to_voxels(g.position[pixel]);
-            found.facing[i] = g.geometric_normal[pixel];
-            found.tangent[i] = frame.tangent;
-            found.bitangent[i] = frame.bitangent;
-            found.normal[i] = frame.normal;
+            const int pixel = y * work.gbuffer.width + x;
+            if (work.gbuffer.hit(pixel)) add_receiver(work, pixel, found, batch);
         }
+    batch.count = found.count;
 }
 
-void fill_batch(const Work& work, const Receivers& from, const vec3& cone, ConeBatch& batch) {
-    batch.count = from.count;
-    for (int i = 0; i < from.count; ++i) {
-        const vec3 d = from.tangent[i] * cone.x + from.bitangent[i] * cone.y + from.normal[i] * cone.z;
-        set_cone(batch, i, from.surface[i], from.facing[i], work.normal_offset, d, work.own_surface);
+void turn_cones(const Receivers& from, const vec3& cone, ConeBatch& batch) {
+    float* const rows[Receivers::rows] = {batch.dx, batch.dy, batch.dz, batch.slope, batch.axis_direction};
+    for (int row = 0; row < Receivers::rows; ++row)
+        for (int i = 0; i < from.count; ++i)
+            rows[row][i] =
+                from.per_axis[row][0][i] * cone.x + from.per_axis[row][1][i] * cone.y + from.per_axis[row][2][i] * cone.z;
+}
+
+void add_results(const Work& work, const ConeBatch& batch, float weight, Receivers& to) {
+    const float* const rows[4] = {batch.r, batch.g, batch.b, batch.open};
+    for (int row = 0; row < 4; ++row)
+        for (int i = 0; i < batch.count; ++i) to.sum[row][i] += weight * rows[row][i];
+    if (work.environment.constant()) return;
+    for (int i = 0; i < batch.count; ++i) {
+        const vec3 outside = work.environment.mean({batch.dx[i], batch.dy[i], batch.dz[i]}) * (batch.open[i] * weight);
+        for (int k = 0; k < 3; ++k) to.sum[4 + k][i] += outside[k];
     }
 }
 
-/// Marches one phase's cones for its pixels of a tile; adds to `voxels` (radiance and openness) and, where it varies, `sky`.
-Counts march_phase(const Work& work, int phase, const Receivers& receivers, ConeBatch& batch, Buffer<vec4>& voxels,
-                   Buffer<vec4>& sky) {
+/// Marches one phase's cones for its pixels of a tile into `voxels` (radiance and openness) and, where it varies, `sky`.
+Counts march_phase(const Work& work, int phase, Receivers& receivers, ConeBatch& batch, Buffer<vec4>& voxels, Buffer<vec4>& sky) {
     Counts counts;
-    const bool image = !work.environment.constant();
     for (std::size_t c = phase; c < work.set.cones.size(); c += work.block.phases()) {
-        const auto& cone = work.set.cones[c];
-        fill_batch(work, receivers, cone.direction, batch);
+        turn_cones(receivers, work.set.cones[c].direction, batch);
         const ConeCounts done = march_cones(work.pyramid, work.schedule, work.cut_off, batch);
         counts.cones += batch.count, counts.cone_steps += done.steps, counts.voxel_fetches += done.fetches;
-        for (int i = 0; i < batch.count; ++i) {
-            voxels[receivers.pixel[i]] += vec4(batch.r[i], batch.g[i], batch.b[i], batch.open[i]) * cone.weight;
-            if (!image) continue;
-            const vec3 outside = work.environment.mean({batch.dx[i], batch.dy[i], batch.dz[i]});
-            sky[receivers.pixel[i]] += vec4(outside * (batch.open[i] * cone.weight), 0);
-        }
+        add_results(work, batch, work.set.cones[c].weight, receivers);
+    }
+    const auto& sum = receivers.sum;
+    for (int i = 0; i < receivers.count; ++i) {
+        voxels[receivers.pixel[i]] = {sum[0][i], sum[1][i], sum[2][i], sum[3][i]};
+        if (!sky.empty()) sky[receivers.pixel[i]] = {sum[4][i], sum[5][i], sum[6][i], 0.0f};
     }
     return counts;
 }
@@ -120,13 +139,8 @@ GatheredLight march(const DiffuseCones& technique, const Pyramid& pyramid, const
     parallel_tiles(gbuffer.width, gbuffer.height, tile_size, [&](const Tile& tile) {
         thread_local Receivers receivers;
         thread_local ConeBatch batch;
-        for (int y = tile.y0; y < tile.y1; ++y)
-            for (int x = tile.x0; x < tile.x1; ++x) {
-                voxels[y * gbuffer.width + x] = vec4(0);
-                if (image) sky[y * gbuffer.width + x] = vec4(0);
-            }
         for (int phase = 0; phase < work.block.phases(); ++phase) {
-            find_receivers(work, tile, phase, receivers);
+            find_receivers(work, tile, phase, receivers, batch);
             counts[tile.index] += march_phase(work, phase, receivers, batch, voxels, sky);
         }
     });

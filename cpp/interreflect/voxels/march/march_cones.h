@@ -22,21 +22,30 @@ struct ConeBatch {
     alignas(64) float r[capacity], g[capacity], b[capacity], open[capacity];
 };
 
-/// Enters the cone at `i`; `normal` is that of the plane it starts from, `offset` voxels above it.
-inline void set_cone(ConeBatch& batch, int i, const vec3& surface, const vec3& normal, float offset, const vec3& direction,
-                     bool see_own_surface) {
+/// The axis along which a normal is longest.
+inline int longest_axis(const vec3& normal) {
+    const vec3 size = glm::abs(normal);
+    return size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+}
+
+/// Enters where cone `i` starts: `offset` voxels above the plane through `surface` with that normal.
+inline void set_start(ConeBatch& batch, int i, const vec3& surface, const vec3& normal, float offset, bool see_own_surface) {
     const vec3 start = surface + normal * offset, size = glm::abs(normal);
-    const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+    const int axis = longest_axis(normal);
     batch.x[i] = start.x, batch.y[i] = start.y, batch.z[i] = start.z;
-    batch.dx[i] = direction.x, batch.dy[i] = direction.y, batch.dz[i] = direction.z;
     batch.height[i] = offset;
-    batch.slope[i] = glm::dot(direction, normal);
     batch.width[i] = see_own_surface ? 0.0f : size.x + size.y + size.z;
     batch.axis_plane[i] = surface[axis];
     batch.axis_start[i] = start[axis];
-    batch.axis_direction[i] = direction[axis];
     // Within 8 degrees of an axis: over the few texels of a filter such a plane stays in one layer.
     batch.aligned[i] = size[axis] > 0.99f ? 1.0f : 0.0f;
+}
+
+/// Enters where cone `i` goes; `normal` is that of its start.
+inline void set_direction(ConeBatch& batch, int i, const vec3& normal, const vec3& direction) {
+    batch.dx[i] = direction.x, batch.dy[i] = direction.y, batch.dz[i] = direction.z;
+    batch.slope[i] = glm::dot(direction, normal);
+    batch.axis_direction[i] = direction[longest_axis(normal)];
 }
 
 struct ConeCounts {
