@@ -59,6 +59,7 @@ TileTracer::TileTracer(const Integrand& integrand) : in_(integrand) {
     std::sort(whole_by_pattern_.begin(), whole_by_pattern_.end(), [&](auto i, auto j) { return place(i) < place(j); });
     const std::uint32_t patterns = *std::max_element(pattern_of_pixel_.begin(), pattern_of_pixel_.end()) + 1;
     for (auto& table : of_pattern_) table.resize(patterns);
+    place_of_pattern_.resize(patterns);
     first_.resize(tracing_tile_pixels), first_direction_.resize(tracing_tile_pixels), first_emission_.resize(tracing_tile_pixels);
     first_hit_.resize(tracing_tile_pixels);
     for (auto& surfaces : surfaces_) surfaces.resize(tracing_tile_pixels);
@@ -86,6 +87,8 @@ void TileTracer::trace(const Tile& tile, int first, int end) {
     counts_ = Counts{};
     for (auto* image : {&direct_, &indirect_, &certain_}) image->assign(tracing_tile_pixels, vec3(0));
     make_orders(tile);
+    if (!repeats())
+        for (std::uint32_t k = 0; k < place_of_pattern_.size(); ++k) place_of_pattern_[k] = sequence.of_pattern(0, k);
     if (repeats()) {
         trace_primary(tile, sequence, first);
         if (first == 0) add_first_lights(certain_);
@@ -113,9 +116,10 @@ void TileTracer::add_first_lights(std::vector<vec3>& to) {
 void TileTracer::trace_primary(const Tile& tile, const SampleSequence& sequence, int sample) {
     const std::size_t count = by_block_.size();
     rays_.resize(count), hits_.resize(count);
+    const Bits2 of_sample = sequence.of_sample(0, static_cast<std::uint32_t>(sample));
     const auto place_of = [&](std::uint32_t pixel) {
         vec2 place(0.5f);
-        if (in_.pixel == PixelFilter::box) place = sequence.pair(0, static_cast<std::uint32_t>(sample), pattern_of_pixel_[pixel]);
+        if (in_.pixel == PixelFilter::box) place = SampleSequence::join(of_sample, place_of_pattern_[pattern_of_pixel_[pixel]]);
         return vec2(static_cast<float>(tile.x0 + static_cast<int>(pixel % tracing_tile)) + place.x,
                     static_cast<float>(tile.y0 + static_cast<int>(pixel / tracing_tile)) + place.y);
     };

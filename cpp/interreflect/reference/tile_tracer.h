@@ -99,6 +99,7 @@ class TileTracer {
     const SampleSequence* sequence_ = nullptr;
     std::array<Bits2, pairs_a_vertex> of_sample_;
     std::array<std::vector<Bits2>, pairs_a_vertex> of_pattern_;
+    std::vector<Bits2> place_of_pattern_;  // in the pixel
     std::vector<std::uint32_t> pattern_of_pixel_, whole_by_pattern_, whole_by_block_;
     std::vector<std::uint32_t> by_pattern_, by_block_;    // pixels of the current tile
     std::vector<SurfacePoint> first_;                     // by pixel

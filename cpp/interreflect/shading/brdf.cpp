@@ -106,10 +106,19 @@ float glossy_share(const SurfacePoint& p, float cos_o) {
     return glossy / (glossy + diffuse);
 }
 
+/// The same without a lobe: most surfaces, and much cheaper.
+BrdfValue diffuse_value(const SurfacePoint& p, const vec3& wo, const vec3& wi, float cos_o) {
+    const float cos_i = glm::dot(p.normal, wi);
+    if (cos_o <= 0.0f || cos_i <= 0.0f || max_component(p.albedo) <= 0.0f) return {};
+    const bool above = glm::dot(p.geometric_normal, wo) > 0.0f && glm::dot(p.geometric_normal, wi) > 0.0f;
+    return {above ? p.albedo * (1.0f / pi) : vec3(0), cos_i * (1.0f / pi)};
+}
+
 }  // namespace
 
 BrdfValue evaluate_brdf_and_pdf(const SurfacePoint& p, const vec3& wo, const vec3& wi) {
     const float cos_o = glm::dot(p.normal, wo);
+    if (max_component(p.specular) <= 0.0f) return diffuse_value(p, wo, wi, cos_o);
     const float share = cos_o > 0.0f ? glossy_share(p, cos_o) : -1.0f;
     if (share < 0.0f) return {};
     const float cos_i = glm::dot(p.normal, wi);

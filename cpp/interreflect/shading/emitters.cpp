@@ -14,8 +14,9 @@ namespace {
 
 // Up to so many triangles are weighed anew from every point: their solid angles cost less than the shadow ray they save.
 constexpr std::size_t most_weighed = 16;
-// Below this solid angle a triangle is sampled by area: the light varies little over it, and spherical angles lose their digits.
-constexpr float least_solid_angle = 2e-3f;
+// From further away than so many times its radius a triangle is weighed and sampled by area: the light varies little over it, and
+// spherical angles cost more than that and lose their digits.
+constexpr float far_radii = 2.0f;
 constexpr int most_cuts = 64;
 
 /// The corner of a piece and its shape, in units of 1 / cuts of barycentric coordinates.
@@ -114,15 +115,24 @@ vec3 EmitterSampler::radiance(const Triangle& t, const vec2& barycentric) const 
     return t.map < 0 ? t.emission : t.emission * scene_->textures[t.map]->bilinear(texcoord);
 }
 
+/// angles: 0 where the triangle is far.
 float EmitterSampler::weigh_few(const vec3& position, float* weights, float* angles) const {
     float sum = 0;
     for (std::size_t i = 0; i < triangles_.size(); ++i) {
         const Triangle& t = triangles_[i];
         const vec3 a = t.corner - position;
         weights[i] = angles[i] = 0.0f;
-        if (glm::dot(a, t.normal) >= 0.0f) continue;
-        angles[i] = solid_angle(glm::normalize(a), glm::normalize(a + t.edge1), glm::normalize(a + t.edge2));
-        weights[i] = angles[i] * luminance(t.emission);
+        const float height = -glm::dot(a, t.normal);
+        if (height <= 0.0f) continue;
+        const vec3 from_corner = (t.edge1 + t.edge2) / 3.0f, centre = a + from_corner;
+        const vec3 second = t.edge1 - from_corner, third = t.edge2 - from_corner;
+        const float radius2 =
+            glm::max(glm::dot(from_corner, from_corner), glm::max(glm::dot(second, second), glm::dot(third, third)));
+        const float distance2 = glm::dot(centre, centre);
+        float angle = t.area * height / (distance2 * std::sqrt(distance2));
+        if (distance2 < far_radii * far_radii * radius2)
+            angle = angles[i] = solid_angle(glm::normalize(a), glm::normalize(a + t.edge1), glm::normalize(a + t.edge2));
+        weights[i] = angle * luminance(t.emission);
         sum += weights[i];
     }
     return sum;
@@ -150,7 +160,7 @@ LightDirection EmitterSampler::sample_few(const vec3& position, float choose, co
     const vec3 a = t.corner - position;
     LightDirection light;
     light.radiance = t.emission;
-    if (angles[i] < least_solid_angle) {
+    if (angles[i] <= 0.0f) {
         const vec2 b = uniform_triangle(u);
         const vec3 to = a + t.edge1 * b.x + t.edge2 * b.y;
         light.distance = glm::length(to);
@@ -207,7 +217,7 @@ float EmitterSampler::pdf(const Hit& hit, const vec3& position, const vec3& dire
         const float sum = weigh_few(position, weights, angles);
         const auto i = t - triangles_.data();
         if (!(weights[i] > 0.0f)) return 0.0f;
-        return weights[i] / sum * (angles[i] < least_solid_angle ? by_area() : 1.0f / angles[i]);
+        return weights[i] / sum * (angles[i] <= 0.0f ? by_area() : 1.0f / angles[i]);
     }
     const std::uint32_t piece = t->first_piece + piece_of({hit.u, hit.v}, t->cuts);
     return (cdf_[piece + 1] - cdf_[piece]) * static_cast<float>(t->cuts) * static_cast<float>(t->cuts) * by_area();
