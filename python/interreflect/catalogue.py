@@ -47,10 +47,12 @@ def method_rows() -> list[Row]:
         for field in dataclasses.fields(method):
             limits = field.metadata.get("range")
             if isinstance(limits, Range):
-                kind = "choice" if limits.choices else type(field.default).__name__
+                kind = "choice" if limits.choices else str(field.type)
                 rows.append(("", field.name, kind, limits.unit, _range(limits), repr(field.default), limits.doc))
             else:
                 rows.append(("", field.name, "technique", "", "", repr(field.default), _choices_of(field.name)))
+                if not _choices_of(field.name):  # no stage lists its knobs
+                    rows += [_knob_row(knob, f"{field.name}.") for knob in type(field.default).description["params"]]
     return rows
 
 
@@ -65,10 +67,7 @@ def technique_rows(stage: str | None = None) -> list[Row]:
             described = technique.description  # type: ignore[attr-defined]
             source = f" [{described['source']}]" if described.get("source") else ""
             rows.append((f"{name}: {technique.__name__}", "", "", "", "", "", described["doc"] + source))
-            for knob in described["params"]:
-                rows.append(
-                    ("", knob["name"], knob["type"], knob["unit"], _param_range(knob), repr(knob["default"]), knob["doc"])
-                )  # fmt: skip
+            rows += [_knob_row(knob) for knob in described["params"]]
     return rows
 
 
@@ -167,6 +166,10 @@ def _call(text: str) -> tuple[str, dict[str, Any]]:
 
 def _kebab(name: str) -> str:
     return "".join(f"-{letter.lower()}" if letter.isupper() and index else letter.lower() for index, letter in enumerate(name))
+
+
+def _knob_row(knob: dict[str, Any], prefix: str = "") -> Row:
+    return "", prefix + knob["name"], knob["type"], knob["unit"], _param_range(knob), repr(knob["default"]), knob["doc"]
 
 
 def _choices_of(stage: str) -> str:

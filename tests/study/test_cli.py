@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from interreflect.catalogue import parse_knobs, parse_size, parse_value, scene_rows
+from interreflect.catalogue import method_rows, parse_knobs, parse_size, parse_value, scene_rows, technique_rows
 
 PACKAGE = Path(__file__).parents[2] / "python"
 RUN = "import sys; sys.argv[0] = 'interreflect'; from interreflect.cli import main; main()"
@@ -123,6 +123,21 @@ def test_nothing_in_a_value_is_run():
         parse_value("Evil(x=1)")
     with pytest.raises(ValueError, match="knobs go by name"):
         parse_value("__import__('os').system('true')")
+
+
+def test_every_knob_of_every_method_is_listed():
+    rows = [row[:6] for row in method_rows()]
+    assert ("", "spp", "int", "", "[1, inf)", "16") in rows
+    assert ("", "milliseconds", "float | None", "ms", "(0, inf)", "None") in rows
+    assert any(row[1] == "grid.resolution" and row[3] == "voxels" and row[5] == "128" for row in rows)
+
+
+def test_every_technique_is_listed_with_unit_range_and_default():
+    rows = technique_rows("shadow")
+    assert any(row[1] == "bias" and row[3] == "texels" for row in rows)
+    assert all(row[6] for row in rows)
+    with pytest.raises(ValueError, match="there is no stage 'shadows'"):
+        technique_rows("shadows")
 
 
 @pytest.mark.parametrize("text", ["640", "640x", "axb", "-1x3", "1x2x3"])
