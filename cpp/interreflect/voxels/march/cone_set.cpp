@@ -11,6 +11,11 @@ vec3 tilted(float cosine, float azimuth) {
     return {sine * std::cos(azimuth), sine * std::sin(azimuth), cosine};
 }
 
+/// Solid angle of a cone of its own width, of the hemisphere's part that it stands for. The pyramid's filter reaches past the
+/// cone, so cones that fill their part see too far aside: of 1, .6, .4 and .2 this had the least error on rooms, Cornell box and
+/// atrium.
+constexpr float own_share = 0.4f;
+
 /// Mean of the cosine to the axis over a cone.
 float mean_cosine_to_axis(float half_angle) { return 0.5f * (1.0f + std::cos(half_angle)); }
 
@@ -95,7 +100,7 @@ ConeSet freed_program_cones() {
 ConeSet cosine_cones(int count, float half_angle) {
     ConeSet set;
     const auto n = static_cast<float>(count);
-    set.half_angle = half_angle > 0.0f ? half_angle : std::acos(1.0f - 1.0f / n);
+    set.half_angle = half_angle > 0.0f ? half_angle : std::acos(1.0f - own_share / n);
     const auto rings = make_rings(count);
     const float tilt = common_tilt(rings, 2.0f / 3.0f / mean_cosine_to_axis(set.half_angle));
     for (std::size_t r = 0; r < rings.size(); ++r)

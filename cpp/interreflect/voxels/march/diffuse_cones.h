@@ -17,7 +17,7 @@ struct DiffuseCones {
     std::string set = "cosine";
     int cones = 40;
     double half_angle = 0.0;
-    double step = 1.0;
+    double step = 0.75;
     double first_diameter = 0.75;
     double normal_offset = 1.5;
     double level_bias = -1.0;
