@@ -6,7 +6,7 @@ import numpy as np
 
 from interreflect import _core
 from interreflect.frame import Image
-from interreflect.methods.denoiser import Denoiser, denoiser_for
+from interreflect.methods.denoiser import denoiser_for
 from interreflect.methods.knobs import knob
 from interreflect.methods.method import Method, method
 from interreflect.methods.prepared import View
@@ -20,9 +20,9 @@ _LEAST_REFLECTANCE = 0.05  # below it, dividing by the reflectance would turn ro
 class PathTracingDenoised(Method):
     """Path tracing with few samples, denoised with the G-buffer's albedo and normals as guides, after Áfra's Open Image Denoise.
 
-    As strong as it can honestly be made: emission and delta lights have no noise and are kept as they are; the rest is divided by the
-    surface's reflectance before it is denoised, so that textures stay sharp. With `scale` below 1 that rest is traced and denoised at a
-    smaller size and scaled up, everything else stays at full size. The picture is denoised once: its noisy part is given to direct and
+    As strong as it can honestly be made: emission and delta lights have no noise and are kept as they are, only the rest is denoised.
+    Dividing that rest by the surface's reflectance first was tried and lost. With `scale` below 1 it is traced and denoised at a smaller
+    size and its irradiance scaled up; all else stays at full size. The picture is denoised once: its noisy part is given to direct and
     indirect light in the proportion that blocks of 8 x 8 pixels of the noisy picture have.
 
     ImportError where Open Image Denoise is absent: it comes with the extra `denoise`.
@@ -46,20 +46,16 @@ class PathTracingDenoised(Method):
             certain = traced.certain if small == view.size else note(self._trace(view, view.size, 0)).certain
         with profile.stage("denoise"):
             sampled = traced.direct - traced.certain
-            smooth = self._denoise(denoiser, guide, sampled + traced.indirect)
+            rest = denoiser(sampled + traced.indirect, guide.albedo, guide.normal)
         with profile.stage("shade"):
             share = direct_share(sampled, traced.indirect)
             if small != view.size:
-                smooth = resize(smooth, view.size)
-            rest = smooth * _reflectance(gbuffer)
+                rest = resize(rest / _reflectance(guide), view.size) * _reflectance(gbuffer)
             direct_rest = rest * resize(share, view.size) if share.any() else np.float32(0)
         return certain + direct_rest, rest - direct_rest
 
     def _trace(self, view: View, size: tuple[int, int], samples: int) -> _core.PathTraced:
         return _core.path_trace(view.scene.core, core_camera(view.camera), *size, samples=samples, bounces=self.bounces, seed=view.seed)
-
-    def _denoise(self, denoiser: Denoiser, guide: _core.GBuffer, noisy: Image) -> Image:
-        return denoiser(noisy / _reflectance(guide), guide.albedo, guide.normal)
 
 
 def _reflectance(gbuffer: _core.GBuffer) -> Image:
