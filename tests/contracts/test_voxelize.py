@@ -165,6 +165,19 @@ def test_what_lies_outside_the_domain_is_left_out(technique):
     assert np.array_equal(every.coordinates[inside], some.coordinates)
 
 
+def test_a_triangle_far_larger_than_the_domain_costs_only_what_lies_inside(technique):
+    # A floor of 1e5 voxels a side through a domain of 16: its 256 voxels.
+    domain = _core.Domain(lower=[0.0, -0.0004, 0.0], voxel_size=1e-3, cells=[16, 1, 16])
+    grid = voxels_of(technique, scene_of(floor(half=50)), domain=domain)
+    assert len(grid) == 256 and np.allclose(grid.normal, (0, 1, 0))
+
+
+def test_voxels_too_small_for_the_scene_are_refused():
+    domain = _core.Domain(lower=[0.0, 0.0, 0.0], voxel_size=1e-9, cells=[16, 1, 16])
+    with pytest.raises(ValueError, match="longer than 2\\^20 voxels"):
+        voxels_of(ir.SurfaceSampling(), scene_of(floor()), domain=domain)
+
+
 @pytest.mark.parametrize("seed", range(4))
 def test_samples_fall_into_cells_that_the_triangles_overlap_and_miss_fewer_as_they_get_denser(seed):
     scene = scene_of(*soup(seed, 30))

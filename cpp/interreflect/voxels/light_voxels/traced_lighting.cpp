@@ -109,6 +109,7 @@ class Lighting {
         batch_.target.push_back(static_cast<std::uint32_t>(2 * k) + (back ? 1U : 0U));
     }
     void trace(bool coherent) {
+        if (oneapi::tbb::is_current_task_group_canceling()) throw Cancelled();  // thousands of samples take long
         batch_.blocked.resize(batch_.rays.size());
         if (coherent)
             intersector_.occluded_coherent(batch_.rays, batch_.blocked);

@@ -28,13 +28,18 @@ std::vector<TrianglePiece> triangle_pieces(const Geometry& geometry) {
     return pieces;
 }
 
-/// False for a triangle without area.
+/// False for a triangle without area, or outside the domain.
 bool make_voxel_triangle(const Scene& scene, const Domain& domain, std::uint32_t instance, std::uint32_t triangle,
                          VoxelTriangle& made) {
     const Corners world = world_corners(*scene.geometry, instance, triangle);
     made.corner[0] = domain.to_voxels(world.a);
     made.corner[1] = domain.to_voxels(world.b);
     made.corner[2] = domain.to_voxels(world.c);
+    const vec3 lower = glm::min(glm::min(made.corner[0], made.corner[1]), made.corner[2]);
+    const vec3 upper = glm::max(glm::max(made.corner[0], made.corner[1]), made.corner[2]);
+    const vec3 cells(domain.cells);
+    if (glm::any(glm::lessThan(upper, vec3(0))) || glm::any(glm::greaterThan(lower, cells))) return false;
+    made.crosses = glm::any(glm::lessThan(lower, vec3(0))) || glm::any(glm::greaterThan(upper, cells));
     const vec3 cross = glm::cross(made.corner[1] - made.corner[0], made.corner[2] - made.corner[0]);
     const float length = glm::length(cross);
     if (!(length > 0.0f)) return false;

@@ -19,9 +19,10 @@ namespace interreflect {
 struct VoxelTriangle {
     vec3 corner[3];
     vec2 texcoord[3];
-    vec3 normal{0};    // unit, front side
-    float area = 0;    // in faces of a voxel
-    float offset = 0;  // of rays that leave it, world space
+    vec3 normal{0};        // unit, front side
+    float area = 0;        // in faces of a voxel
+    float offset = 0;      // of rays that leave it, world space
+    bool crosses = false;  // the domain's border
     const Material* material = nullptr;
     const Texture* albedo_map = nullptr;
     const Texture* emission_map = nullptr;
@@ -88,21 +89,20 @@ class ContributionSink {
     /// A sample of the current triangle at `position` voxels that stands for `area`; dropped outside the domain.
     [[gnu::always_inline]] void add(const vec3& position, float area, bool solid, const vec3& albedo, const vec3& emitted) {
         const vec3 floor = glm::floor(position);
+        if (!inside(floor)) return;
         add(ivec3(floor), position - floor - 0.5f, area, solid, albedo, emitted);
     }
     /// The only sample of the current triangle.
     [[gnu::always_inline]] void add_only(const vec3& position, bool solid, const vec3& albedo, const vec3& emitted) {
         const vec3 floor = glm::floor(position);
-        const ivec3 at(floor);
-        if (outside(at)) return;
+        if (!inside(floor)) return;
         ++samples;
         const float area = triangle_->area, share = solid ? area : 0.0f;
-        keep(domain_.cell(at), share, area, albedo * share, (position - floor - 0.5f) * share, emitted * share);
+        keep(domain_.cell(ivec3(floor)), share, area, albedo * share, (position - floor - 0.5f) * share, emitted * share);
     }
-    /// The same with the cell given, and the position from its centre.
+    /// The same with the cell given, which lies in the domain, and the position from its centre.
     [[gnu::always_inline]] void add(const ivec3& at, const vec3& local, float area, bool solid, const vec3& albedo,
                                     const vec3& emitted) {
-        if (outside(at)) return;
         ++samples;
         const std::uint32_t cell = domain_.cell(at);
         const unsigned number = static_cast<unsigned>((at.x & 1) | (at.y & 1) << 1 | (at.z & 1) << 2);
@@ -135,11 +135,9 @@ class ContributionSink {
         float area = 0, total = 0;
         vec3 albedo{0}, position{0}, emission{0};
     };
-    bool outside(const ivec3& at) const {
-        const ivec3& n = domain_.cells;
-        return static_cast<unsigned>(at.x) >= static_cast<unsigned>(n.x) ||
-               static_cast<unsigned>(at.y) >= static_cast<unsigned>(n.y) ||
-               static_cast<unsigned>(at.z) >= static_cast<unsigned>(n.z);
+    bool inside(const vec3& floor) const {
+        const vec3 n(domain_.cells);
+        return floor.x >= 0.0f && floor.y >= 0.0f && floor.z >= 0.0f && floor.x < n.x && floor.y < n.y && floor.z < n.z;
     }
     void flush(const Slot& slot) { keep(slot.cell, slot.area, slot.total, slot.albedo, slot.position, slot.emission); }
     [[gnu::always_inline]] void keep(std::uint32_t cell, float area, float total, const vec3& albedo, const vec3& position,

@@ -116,8 +116,8 @@ void add_part(const VoxelTriangle& t, const std::array<vec3, 3>& local, const Po
 void overlap_triangle(const VoxelTriangle& t, const ivec3& cells, int samples, ContributionSink& sink) {
     const vec3 lower = glm::min(glm::min(t.corner[0], t.corner[1]), t.corner[2]);
     const vec3 upper = glm::max(glm::max(t.corner[0], t.corner[1]), t.corner[2]);
-    const ivec3 first = glm::max(ivec3(glm::floor(glm::max(lower, vec3(-1.0f)))), ivec3(0));
-    const ivec3 last = glm::min(ivec3(glm::floor(glm::min(upper, vec3(cells)))), cells - 1);
+    const ivec3 first(glm::floor(glm::clamp(lower, vec3(0), vec3(cells - 1))));
+    const ivec3 last(glm::floor(glm::clamp(upper, vec3(0), vec3(cells - 1))));
     for (int z = first.z; z <= last.z; ++z)
         for (int y = first.y; y <= last.y; ++y)
             for (int x = first.x; x <= last.x; ++x) {

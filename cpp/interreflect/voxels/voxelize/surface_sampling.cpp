@@ -1,11 +1,14 @@
 #include "voxels/voxelize/surface_sampling.h"
 
 #include <algorithm>
+#include <stdexcept>
 
 #include "voxels/voxelize/contributions.h"
 
 namespace interreflect {
 namespace {
+
+constexpr float most_voxels = 0x1p20f;
 
 /// What a triangle looks like at samples that stand for `area` each.
 struct Appearance {
@@ -27,9 +30,21 @@ struct Appearance {
     }
 };
 
+/// The part of start + along * u, u in [0, 1], that may lie in a box of `cells`.
+vec2 part_inside(const vec3& start, const vec3& along, const vec3& cells) {
+    float enter = 0.0f, leave = 1.0f;
+    for (int axis = 0; axis < 3; ++axis) {
+        if (along[axis] == 0.0f) continue;
+        const float a = -start[axis] / along[axis], b = (cells[axis] - start[axis]) / along[axis];
+        enter = std::max(enter, std::min(a, b));
+        leave = std::min(leave, std::max(a, b));
+    }
+    return {enter, leave};
+}
+
 /// Rows along the longest edge, each cut into equal pieces with a sample in their middle: every sample's area is known exactly,
 /// and a sliver takes no more samples than its length asks for.
-void sample_triangle(const VoxelTriangle& t, float spacing, ContributionSink& sink) {
+void sample_triangle(const VoxelTriangle& t, const vec3& cells, float spacing, ContributionSink& sink) {
     int base = 0;
     float longest = -1.0f;
     for (int i = 0; i < 3; ++i) {
@@ -41,6 +56,8 @@ void sample_triangle(const VoxelTriangle& t, float spacing, ContributionSink& si
     const vec3 p0 = t.corner[base], p1 = t.corner[(base + 1) % 3], p2 = t.corner[(base + 2) % 3];
     const vec2 t0 = t.texcoord[base], t1 = t.texcoord[(base + 1) % 3], t2 = t.texcoord[(base + 2) % 3];
     const float height = 2.0f * t.area / longest;
+    if (!(longest < most_voxels))
+        throw std::invalid_argument("voxelize: a triangle is longer than 2^20 voxels: the domain's voxels are too small");
     const int rows = std::max(1, static_cast<int>(std::ceil(height / spacing)));
     const bool uniform = t.uniform();
     const Appearance look(t, std::min(t.area, spacing * spacing));
@@ -57,7 +74,14 @@ void sample_triangle(const VoxelTriangle& t, float spacing, ContributionSink& si
         const float area = 2.0f * t.area * rest / (static_cast<float>(rows) * static_cast<float>(count));
         const vec3 start = p0 * rest + p2 * v, along = (p1 - p0) * rest;
         const vec2 uv_start = t0 * rest + t2 * v, uv_along = (t1 - t0) * rest;
-        for (int i = 0; i < count; ++i) {
+        int first = 0, last = count - 1;
+        if (t.crosses) {  // one sample more at each end: rounding
+            const vec2 inside = part_inside(start, along, cells) * static_cast<float>(count);
+            if (!(inside.x <= inside.y)) continue;
+            first = std::max(first, static_cast<int>(inside.x) - 1);
+            last = std::min(last, static_cast<int>(inside.y) + 1);
+        }
+        for (int i = first; i <= last; ++i) {
             const float u = (static_cast<float>(i) + 0.5f) / static_cast<float>(count);
             const vec3 position = start + along * u;
             if (uniform) {
@@ -75,9 +99,10 @@ void sample_triangle(const VoxelTriangle& t, float spacing, ContributionSink& si
 
 VoxelGrid voxelize(const SurfaceSampling& technique, const Scene& scene, const Domain& domain) {
     const auto spacing = static_cast<float>(technique.spacing);
-    return voxelize_triangles(scene, domain, [spacing](const VoxelTriangle& triangle, ContributionSink& sink) {
-        sample_triangle(triangle, spacing, sink);
-    });
+    return voxelize_triangles(scene, domain,
+                              [spacing, cells = vec3(domain.cells)](const VoxelTriangle& triangle, ContributionSink& sink) {
+                                  sample_triangle(triangle, cells, spacing, sink);
+                              });
 }
 
 }  // namespace interreflect
