@@ -209,6 +209,9 @@ def changed(path: str, value: Any) -> dict[str, Any]:
         ("buffers.0.uri", "%2e%2e/%2e%2e/%2e%2e/etc/passwd", "must not lead above"),
         ("buffers.0.uri", "/etc/hostname", "relative path"),
         ("buffers.0.uri", "file:///etc/hostname", "without a scheme"),
+        ("buffers.0.uri", "\ud800.bin", "must be a relative path"),
+        ("buffers.0.uri", "a%00.bin", "must be a relative path"),
+        ("buffers.0.uri", "a" * 5000, "does not exist"),
         ("buffers.0.uri", "data:text/plain,hello", "base64"),
         ("buffers.0.uri", "data:;base64,%%%", "base64"),
         ("buffers.0.uri", ..., "uri is missing"),
@@ -236,6 +239,8 @@ def test_what_is_malformed_is_refused_with_its_key(tmp_path: Path, path: str, va
         (b'{"asset":{"version":"2.0"},"extras":' + b"[" * 100_000 + b"]" * 100_000 + b"}", "JSON nested 100001 deep"),
         (b'{"asset":{"version":"2.0"},"extras":"' + b"[" * 1000 + b'"}', "scenes is missing"),  # brackets in a string nest nothing
         (b'{"a":' * 5000, "JSON nested 5000 deep"),
+        (b'{"a":"' + b'\\"' * 500_000, "is no JSON"),
+        (b'{"a":"' + b'\\"' * 500_000 + b"\\", "is no JSON"),
     ],
 )
 def test_json_is_parsed_within_bounds(tmp_path: Path, data: bytes, message: str) -> None:

@@ -205,6 +205,8 @@ def test_lights_and_cameras_of_a_gltf_come_after_the_manifests_and_move_with_it(
         ('up = "y"', "up must be three finite numbers, got 'y'"),
         ('name = "x', "is no TOML"),
         ("a = [" + "[" * 5000, "is no TOML|more than"),
+        (".".join("a" * 50_000) + " = 1", "a key of more than 16 parts is not read"),
+        ("'b' . " + " . ".join(['"a"'] * 20) + " = 1", "a key of more than 16 parts is not read"),
         ("geometry = 3", r"geometry must be a list of tables"),
         ("[geometry]\nfile = 'a.obj'", r"geometry must be a list of tables"),
         ("material = 1", "material must hold tables"),

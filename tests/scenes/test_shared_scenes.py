@@ -5,6 +5,7 @@ import itertools
 import re
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 from types import ModuleType
 
@@ -127,6 +128,26 @@ def _joined(parts: list) -> tuple[np.ndarray, np.ndarray | None, np.ndarray | No
     return tuple(columns)  # type: ignore[return-value]
 
 
+def compare_materials(scene: Scene, manifest: dict, of_file: dict) -> None:
+    """The scene's materials against those of one file as the independent reader merges them."""
+    tables = manifest.get("material", {})
+    for mesh in scene.meshes:
+        material = mesh.material
+        if material.name not in of_file:
+            continue
+        over = {**tables.get("*", {}), **tables.get(material.name, {})}
+        theirs = {**of_file[material.name], **over}
+        if "roughness" in over and "exponent" not in over:
+            theirs.pop("exponent", None)
+        alpha = np.sqrt(2 / (theirs["exponent"] + 2)) if "exponent" in theirs else theirs.get("roughness", 0.5) ** 2
+        ours = np.sqrt(2 / (material.exponent + 2)) if material.exponent is not None else material.roughness**2
+        assert np.isclose(ours, alpha)
+        if mesh.texcoords is not None or "albedo_map" not in theirs:
+            assert np.allclose(material.albedo, theirs.get("albedo", [1.0] * 3 if "albedo_map" in theirs else [0.5] * 3))
+            assert (material.albedo_map is not None) == ("albedo_map" in theirs)
+        assert np.allclose(material.specular, theirs.get("specular", 0)) and np.allclose(material.emission, theirs.get("emission", 0))
+
+
 @pytest.mark.parametrize(
     "name",
     [
@@ -141,18 +162,18 @@ def _joined(parts: list) -> tuple[np.ndarray, np.ndarray | None, np.ndarray | No
         "veach_ajar/scene",
     ],
 )
-def test_an_independent_reader_sees_the_same_triangles_normals_and_texture_coordinates(
+def test_an_independent_reader_sees_the_same_triangles_normals_texture_coordinates_and_materials(
     shared_scenes: Path, witness: ModuleType, name: str
 ) -> None:
-    import tomllib
-
     path = (shared_scenes / f"{name}.toml").resolve()
     manifest = tomllib.loads(path.read_text())
-    ours = world_soup(read_scene(str(path)))
+    scene = read_scene(str(path))
+    ours = world_soup(scene)
     soups: dict[str, list] = {}
-    cache: dict = {}
+    files: dict = {}
     for geometry in manifest["geometry"]:
-        parts, _ = witness.parts(geometry, str(path.parent), cache, [])
+        parts, materials = witness.parts(geometry, str(path.parent), files, [])
+        compare_materials(scene, manifest, materials)
         for positions, normals, texcoords, triangles, material in parts:
             transparent = manifest.get("material", {}).get(material, {}).get("transparent", False)
             if len(triangles) and not transparent:

@@ -12,7 +12,7 @@ from interreflect.scenes.checks import shorten
 from interreflect.scenes.texture import MAX_PIXELS
 
 EXTENSIONS = (".obj", ".ply", ".gltf", ".glb")
-MAX_MANIFEST_BYTES = 2**23
+MAX_MANIFEST_BYTES = 2**22
 MAX_GEOMETRY_BYTES = 2**30
 MAX_SCENE_PIXELS = 2**30
 
@@ -23,6 +23,13 @@ def shown(path: str | os.PathLike[str]) -> str:
     """A file as messages name it: its folder and name."""
     absolute = Path(os.path.abspath(path))
     return f"{absolute.parent.name}/{absolute.name}" if absolute.parent.name else absolute.name
+
+
+def _can_be_a_path(name: str) -> bool:
+    try:
+        return b"\0" not in os.fsencode(name)
+    except UnicodeEncodeError:  # half a character, as JSON can spell it
+        return False
 
 
 def read_bytes(path: str, limit: int) -> bytes:
@@ -58,16 +65,18 @@ class Folder:
         """
         if not isinstance(name, str) or not name:
             raise SceneError(f"{where} must be a file name, got {shorten(name)}")
-        if "\0" in name or os.path.isabs(name) or name.startswith("\\") or _SCHEME.match(name):
+        if not _can_be_a_path(name) or os.path.isabs(name) or name.startswith("\\") or _SCHEME.match(name):
             raise SceneError(f"{where} must be a relative path without a scheme, got {shorten(name)}")
         start = os.path.dirname(beside) if beside else self.base
+        key = os.path.join(os.path.relpath(start, self.base), name)
+        if key in self.used:
+            return self.used[key]
         path = os.path.realpath(os.path.join(start, name))
         root = os.path.dirname(self.base)
         if os.path.commonpath([root, path]) != root:
             raise SceneError(f"{where} must not lead above the folder that holds the scene's folder, got {shorten(name)}")
-        found = path if os.path.isfile(path) else None
-        self.used[os.path.join(os.path.relpath(start, self.base), name)] = found
-        return found
+        self.used[key] = path if os.path.isfile(path) else None
+        return self.used[key]
 
     def require(self, name: object, where: str, beside: str | None = None) -> str:
         """As `locate`; SceneError where there is no such file."""

@@ -153,8 +153,8 @@ def _add_camera(node: Table, cameras: list[Table], transform: NDArray[np.float64
     lens = cameras[k].table("perspective")
     aspect = lens.number("aspectRatio", 16 / 9, 1e-3, 1e3)
     half = math.tan(lens.number("yfov", ..., 1e-6, math.pi - 1e-6) / 2)
-    name = node.value.get("name") or cameras[k].value.get("name") or f"camera{k}"
-    name = name if isinstance(name, str) and name not in geometry.cameras else f"camera{len(geometry.cameras)}"
+    name = node.text("name", "") or cameras[k].text("name", "") or f"camera{k}"
+    name = name if name not in geometry.cameras else f"{name}#{len(geometry.cameras)}"
     position = transform[:3, 3]
     try:
         geometry.cameras[name] = Camera(

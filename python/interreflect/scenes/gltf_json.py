@@ -16,7 +16,9 @@ from interreflect.scenes.checks import FLOAT_MAX, shorten
 MAX_JSON_BYTES = 2**28
 MAX_DEPTH = 64
 
-_STRING = re.compile(rb'"(?:[^"\\]|\\.)*"', re.DOTALL)
+_HALF_CHARACTER = re.compile("[\ud800-\udfff]")  # what JSON can spell and no file or terminal can hold
+# A string, also one without an end: it never gives back what it took, so that no text costs more than one pass
+_STRING = re.compile(rb'"(?:[^"\\]++|\\.|\\\Z)*+(?:"|\Z)', re.DOTALL)
 
 
 def parse_json(file: str, data: bytes) -> Table:
@@ -85,7 +87,7 @@ class Table:
 
     def text(self, key: str, default: Any = ...) -> str:
         value = self._get(key, default)
-        if not isinstance(value, str):
+        if not isinstance(value, str) or _HALF_CHARACTER.search(value):
             raise self.error(key, f"must be a string, got {shorten(value)}")
         return value
 

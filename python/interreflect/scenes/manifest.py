@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import tomllib
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
@@ -31,6 +32,9 @@ _LIGHTS = {
     "spot": (SpotLight, ("position", "direction", "intensity", "inner", "outer")),
 }
 _ENVIRONMENT = ("type", "radiance", "file", "rotation")
+MAX_KEY_PARTS = 16
+# a.b.c and so on, bare or in quotes: the parser's time grows with the square of their number
+_DEEP_KEY = re.compile(rb"""(?<![A-Za-z0-9_-])(?:(?:[A-Za-z0-9_-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+){%d}""" % MAX_KEY_PARTS)
 _MAPS = ("albedo_map", "emission_map", "mask")
 
 
@@ -63,10 +67,11 @@ class Manifest:
 def read_manifest(path: str, folder: Folder) -> Manifest:
     """Raises SceneError that names file, key and value."""
     file = shown(path)
+    data = read_bytes(path, MAX_MANIFEST_BYTES)
+    if _DEEP_KEY.search(data):
+        raise SceneError(f"{file}: a key of more than {MAX_KEY_PARTS} parts is not read")
     try:
-        top = tomllib.loads(read_bytes(path, MAX_MANIFEST_BYTES).decode("utf-8"))
-    except SceneError:
-        raise
+        top = tomllib.loads(data.decode("utf-8"))
     except (ValueError, RecursionError) as error:
         raise SceneError(f"{file}: is no TOML: {str(error)[:200]}") from None
     check_keys(f"{file}: ", top, _TOP)

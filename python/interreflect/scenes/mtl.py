@@ -9,7 +9,7 @@ from interreflect.errors import SceneError
 from interreflect.scenes.checks import shorten
 from interreflect.scenes.files import Folder, read_bytes, shown
 
-MAX_MTL_BYTES = 2**24
+MAX_MTL_BYTES = 2**23
 _COLOURS = {"Kd": "albedo", "Ks": "specular", "Ke": "emission"}
 _MAPS = {"map_Kd": "albedo_map", "map_d": "mask"}
 # Options that may stand before a map's file name, and how many words follow each
@@ -37,13 +37,22 @@ def read_mtl(path: str, folder: Folder, warnings: list[str]) -> dict[str, dict[s
         elif words[0] == "Ns":
             current.update(_gloss(where, words[1:]))
         elif words[0] in _MAPS:
-            name = _file_name(where, words[1:], warnings)
-            found = folder.locate(name, where, path)
-            if found is None:
-                warnings.append(f"{where} {name!r} does not exist; loaded as without it")
-            else:
-                current[_MAPS[words[0]]] = found
+            current[_MAPS[words[0]]] = where, words[1:]  # looked up once all is read: the last one counts
+    for keys in materials.values():
+        for key in _MAPS.values():
+            if key in keys:
+                _locate_map(keys, key, path, folder, warnings)
     return materials
+
+
+def _locate_map(keys: dict[str, Any], key: str, path: str, folder: Folder, warnings: list[str]) -> None:
+    where, words = keys.pop(key)
+    name = _file_name(where, words, warnings)
+    found = folder.locate(name, where, path)
+    if found is None:
+        warnings.append(f"{where} {shorten(name)} does not exist; loaded as without it")
+    else:
+        keys[key] = found
 
 
 def _without_comment(line: str) -> str:

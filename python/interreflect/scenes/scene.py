@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 WORLD = "world"
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class Scene(Content):
     """Meshes, lights and cameras.
 
@@ -43,7 +43,7 @@ class Scene(Content):
     name: str = ""
     up: Vector = (0.0, 1.0, 0.0)
     unit: float = 1.0
-    bodies: Mapping[str, NDArray[np.float64]] = field(default_factory=dict, repr=False)
+    bodies: Mapping[str, NDArray[np.float64]] = field(default_factory=dict)
     warnings: Sequence[str] = field(default=(), repr=False)
 
     def __post_init__(self) -> None:
@@ -77,6 +77,11 @@ class Scene(Content):
             elif not np.array_equal(np.asarray(pose), IDENTITY):
                 raise ValueError(f"bodies[{name!r}] cannot move; give its meshes a body of their own")
         return poses
+
+    def __repr__(self) -> str:
+        """A line to read: scenes can hold thousands of meshes."""
+        cameras = f", cameras {', '.join(self.cameras)}" if self.cameras else ""
+        return f"<Scene {self.name!r}: {self.triangles} triangles, {len(self.lights)} lights{cameras}>"
 
     @property
     def triangles(self) -> int:
