@@ -209,7 +209,7 @@ def changed(path: str, value: Any) -> dict[str, Any]:
         ("buffers.0.uri", "%2e%2e/%2e%2e/%2e%2e/etc/passwd", "must not lead above"),
         ("buffers.0.uri", "/etc/hostname", "relative path"),
         ("buffers.0.uri", "file:///etc/hostname", "without a scheme"),
-        ("buffers.0.uri", "\ud800.bin", "must be a relative path"),
+        ("buffers.0.uri", "\ud800.bin", "must be a string"),
         ("buffers.0.uri", "a%00.bin", "must be a relative path"),
         ("buffers.0.uri", "a" * 5000, "does not exist"),
         ("buffers.0.uri", "data:text/plain,hello", "base64"),
