@@ -33,7 +33,8 @@ PYBIND11_MODULE(_core, m) {
         .def("__enter__", [](Threads& self) { self.before = thread_limit(), thread_limit() = self.limit; })
         .def("__exit__",
              [](Threads& self, const py::object&, const py::object&, const py::object&) { thread_limit() = self.before; });
-    m.def("thread_limit", [] { return thread_limit(); }, "How many threads work of the calling thread may use; 0: all.");
+    m.def(
+        "thread_limit", [] { return thread_limit(); }, "How many threads work of the calling thread may use; 0: all.");
     bind_data(m);
     bind_visibility(m);
     bind_direct(m);

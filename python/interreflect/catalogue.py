@@ -52,7 +52,8 @@ def method_rows() -> list[Row]:
             else:
                 rows.append(("", field.name, "technique", "", "", repr(field.default), _choices_of(field.name)))
                 if not _choices_of(field.name):  # no stage lists its knobs
-                    rows += [_knob_row(knob, f"{field.name}.") for knob in type(field.default).description["params"]]
+                    held: Any = type(field.default)
+                    rows += [_knob_row(knob, f"{field.name}.") for knob in held.description["params"]]
     return rows
 
 
