@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from study_fakes import Fake, Scene
 
-from interreflect import charts
+from interreflect import charts, metrics
 from interreflect.study.pareto import pareto
 from interreflect.study.report import report
 from interreflect.study.run import run
@@ -95,7 +95,7 @@ def test_pictures_stand_beside_their_truth(records):
     shown = [axes for axes in figure.axes if axes.images]
     assert len(shown) == 2 * (1 + 2 * 2)  # per scene: the truth, two pictures, two error maps
     truth = records.truth(records[0])[0]
-    np.testing.assert_allclose(shown[0].images[0].get_array(), charts.metrics.tone_map(truth, truth))
+    np.testing.assert_allclose(shown[0].images[0].get_array(), metrics.tone_map(truth, truth))
 
 
 def test_no_chart_touches_the_global_state_of_matplotlib(records):

@@ -10,8 +10,8 @@ from pathlib import Path
 PACKAGE = Path(__file__).resolve().parent.parent
 # Python files that draw, list or read, or whose effect is in the scene's hash already.
 WITHOUT_EFFECT = {
-    "__init__.py", "cache.py", "catalogue.py", "charts.py", "cli.py", "demo.py", "errors.py", "images.py", "machine.py", "metrics.py",
-    "scenes", "study",
+    "__init__.py", "cache.py", "catalogue.py", "charts", "cli.py", "demo.py", "errors.py", "images.py", "machine.py", "metrics.py",
+    "scenes", "stability", "study",
 }  # fmt: skip
 
 

@@ -1,19 +1,16 @@
-"""Charts of records. They read records only, render nothing, and return matplotlib Figures without global state.
-
-Colours are those of Okabe and Ito, told apart with any colour vision; methods also differ in marker. `dark=True` draws for a
-dark page.
-"""
+"""Charts of a study's records."""
 
 from __future__ import annotations
 
 import math
 import textwrap
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from interreflect import metrics
+from interreflect.charts.style import COLOURS, MARKERS, add_legend, dress, new_figure, theme_of
 from interreflect.study.pareto import MERIT, NOISE_OF, VIEW, configurations, pareto
 from interreflect.study.records import OK, Record, Records
 
@@ -22,11 +19,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-# Okabe and Ito 2008, without black and with yellow last: it is faint on white.
-COLOURS = ("#0072B2", "#E69F00", "#009E73", "#D55E00", "#CC79A7", "#56B4E9", "#999999", "#F0E442")
-MARKERS = "osD^vPX*"
-LIGHT = {"paper": "#ffffff", "ink": "#1a1a1a", "faint": "#8a8a8a"}
-DARK = {"paper": "#16181d", "ink": "#e6e6e6", "faint": "#8f949e"}
 LABELS = {
     "milliseconds": "time per frame, ms (median)",
     "milliseconds_p95": "time per frame, ms (95th percentile)",
@@ -64,13 +56,13 @@ def speed_accuracy(records: Records, x: str = "milliseconds", y: str = "relmse",
         ax.set_yscale("linear" if y == MERIT else "log")
         ax.margins(0.12)
         best = front[(front[VIEW] == list(view)).all(axis=1) & (front[x] > 0) & ((front[y] > 0) | (y == MERIT))]
-        ax.scatter(best[x], best[y], s=110, facecolors="none", edgecolors=_theme(dark)["ink"], linewidths=0.8, zorder=4)
+        ax.scatter(best[x], best[y], s=110, facecolors="none", edgecolors=theme_of(dark)["ink"], linewidths=0.8, zorder=4)
         _name_points(ax, best.head(NAMED_POINTS), x, y, varied(records), dark)
         _noise_band(ax, rows, y, dark)
         _few_ticks(ax, y != MERIT)
         ax.set_title(view_title(view), fontsize=9)
         ax.set(xlabel=LABELS[x], ylabel=LABELS[y])
-    _legend(figure, axes, dark)
+    add_legend(figure, axes, dark)
     return figure
 
 
@@ -91,7 +83,7 @@ def stages(records: Records, dark: bool = False) -> Figure:
         left, places = np.zeros(len(rows)), np.arange(len(rows))
         for index, column in enumerate(columns):
             width = rows[column].fillna(0).to_numpy(float)
-            colour = _theme(dark)["faint"] if column == columns[-1] else COLOURS[index % len(COLOURS)]
+            colour = theme_of(dark)["faint"] if column == columns[-1] else COLOURS[index % len(COLOURS)]
             hatch = "////" if index >= len(COLOURS) and column != columns[-1] else None
             label = column.removeprefix("stage.").removesuffix(".milliseconds")
             ax.barh(places, width, left=left, color=colour, hatch=hatch, label=label if width.any() else None, height=0.7)
@@ -101,7 +93,7 @@ def stages(records: Records, dark: bool = False) -> Figure:
         ax.set_title(f"{group[-1]}: {view_title(group[:-1])}", fontsize=9)
         ax.set(xlabel=LABELS["milliseconds"])
         ax.grid(axis="y", visible=False)
-    _legend(figure, axes, dark)
+    add_legend(figure, axes, dark)
     return figure
 
 
@@ -115,7 +107,7 @@ def images(records: Records, limit: int = 6, dark: bool = False) -> Figure:
     if not shown:
         raise ValueError(f"study {records.study!r} has no pictures to show")
     columns = 1 + max(len(picked) for _, picked in shown)
-    figure = _figure((2.6 * columns, 4.0 * len(shown)), dark)
+    figure = new_figure((2.6 * columns, 4.0 * len(shown)), dark)
     grid = figure.subplots(2 * len(shown), columns, squeeze=False)
     mapped = None
     for row, (view, picked) in enumerate(shown):
@@ -131,11 +123,11 @@ def images(records: Records, limit: int = 6, dark: bool = False) -> Figure:
             below.set_title(f"relMSE {record.metrics['relmse']:.2e}", fontsize=8)
     for ax in grid.flat:
         ax.set_axis_off()
-        ax.title.set_color(_theme(dark)["ink"])
+        ax.title.set_color(theme_of(dark)["ink"])
     if mapped is not None:
         bar = figure.colorbar(mapped, ax=list(grid.flat), shrink=0.5, extend="both", location="bottom", fraction=0.04, pad=0.02)
-        bar.set_label("relative squared error of a pixel", color=_theme(dark)["ink"], fontsize=8)
-        bar.ax.tick_params(which="both", colors=_theme(dark)["ink"], labelsize=8)
+        bar.set_label("relative squared error of a pixel", color=theme_of(dark)["ink"], fontsize=8)
+        bar.ax.tick_params(which="both", colors=theme_of(dark)["ink"], labelsize=8)
     return figure
 
 
@@ -161,52 +153,20 @@ def _error_norm() -> Any:
     return LogNorm(*ERROR_RANGE, clip=True)
 
 
-def _theme(dark: bool) -> dict[str, str]:
-    return DARK if dark else LIGHT
-
-
-def _figure(size: tuple[float, float], dark: bool) -> Figure:
-    from matplotlib.figure import Figure
-
-    return Figure(figsize=size, layout="constrained", facecolor=_theme(dark)["paper"], dpi=120)
-
-
 def _panels(count: int, dark: bool) -> tuple[Figure, list[Axes]]:
     columns = min(count, 2)
     rows = math.ceil(count / columns)
-    figure = _figure((6.4 * columns, 4.6 * rows), dark)
+    figure = new_figure((6.4 * columns, 4.6 * rows), dark)
     axes = list(figure.subplots(rows, columns, squeeze=False).flat)
     for unused in axes[count:]:
         unused.remove()
-    return figure, [_dressed(ax, dark) for ax in axes[:count]]
+    return figure, [dress(ax, dark) for ax in axes[:count]]
 
 
 def _rows(bars: Sequence[int], dark: bool) -> tuple[Figure, list[Axes]]:
-    figure = _figure((8.5, 0.6 + sum(0.95 + 0.3 * n for n in bars)), dark)
+    figure = new_figure((8.5, 0.6 + sum(0.95 + 0.3 * n for n in bars)), dark)
     axes = figure.subplots(len(bars), 1, squeeze=False, gridspec_kw={"height_ratios": [0.95 + 0.3 * n for n in bars]})
-    return figure, [_dressed(ax, dark) for ax in axes.flat]
-
-
-def _dressed(ax: Axes, dark: bool) -> Axes:
-    theme = _theme(dark)
-    ax.set_facecolor(theme["paper"])
-    ax.grid(True, which="major", color=theme["faint"], linewidth=0.5, alpha=0.35)
-    ax.set_axisbelow(True)
-    for side, spine in ax.spines.items():
-        spine.set(color=theme["faint"], visible=side in ("left", "bottom"))
-    ax.tick_params(which="both", colors=theme["ink"], labelsize=8)
-    for text in (ax.xaxis.label, ax.yaxis.label, ax.title):
-        text.set(color=theme["ink"], fontsize=9)
-    return ax
-
-
-def _legend(figure: Figure, axes: Iterable[Axes], dark: bool) -> None:
-    entries = {label: handle for ax in axes for handle, label in zip(*ax.get_legend_handles_labels(), strict=True)}
-    legend = figure.legend(
-        entries.values(), entries.keys(), loc="outside lower center", ncols=min(len(entries), 5), frameon=False, fontsize=8
-    )
-    for text in legend.get_texts():
-        text.set_color(_theme(dark)["ink"])
+    return figure, [dress(ax, dark) for ax in axes.flat]
 
 
 def _styles(methods: pd.Series[Any]) -> dict[str, tuple[str, str]]:
@@ -223,7 +183,7 @@ def _own_front(points: pd.DataFrame, x: str, y: str) -> pd.DataFrame:
 def _noise_band(ax: Axes, rows: pd.DataFrame, y: str, dark: bool) -> None:
     if y not in NOISE_OF or not (rows[NOISE_OF[y]] > 0).any():
         return
-    noise, theme = float(rows[NOISE_OF[y]].max()), _theme(dark)
+    noise, theme = float(rows[NOISE_OF[y]].max()), theme_of(dark)
     ax.axhspan(noise * 1e-9, noise, color=theme["faint"], alpha=0.2, linewidth=0, zorder=1)
     ax.annotate("the truth's noise", (0.01, noise), xycoords=("axes fraction", "data"), va="top", fontsize=7, color=theme["faint"])
     lowest = min(float(rows[y].min()), noise)
@@ -270,7 +230,7 @@ def _name_points(ax: Axes, rows: pd.DataFrame, x: str, y: str, told_apart: Mappi
     ax.set_xlim(low, high * (high / low) ** 0.25)  # room for the last one's words
     for _, row in rows.iterrows():
         text = _knobs(row, told_apart)
-        ax.annotate(text, (row[x], row[y]), xytext=(7, 5), textcoords="offset points", fontsize=6.5, color=_theme(dark)["ink"])
+        ax.annotate(text, (row[x], row[y]), xytext=(7, 5), textcoords="offset points", fontsize=6.5, color=theme_of(dark)["ink"])
 
 
 def view_title(view: Any) -> str:

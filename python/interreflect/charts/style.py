@@ -1,0 +1,48 @@
+"""What charts look like: colours, papers for light and dark pages, axes without clutter. Figures without global state."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+# Okabe and Ito 2008, without black and with yellow last: it is faint on white.
+COLOURS = ("#0072B2", "#E69F00", "#009E73", "#D55E00", "#CC79A7", "#56B4E9", "#999999", "#F0E442")
+MARKERS = "osD^vPX*"
+LIGHT = {"paper": "#ffffff", "ink": "#1a1a1a", "faint": "#8a8a8a"}
+DARK = {"paper": "#16181d", "ink": "#e6e6e6", "faint": "#8f949e"}
+
+
+def theme_of(dark: bool) -> dict[str, str]:
+    return DARK if dark else LIGHT
+
+
+def new_figure(size: tuple[float, float], dark: bool) -> Figure:
+    from matplotlib.figure import Figure
+
+    return Figure(figsize=size, layout="constrained", facecolor=theme_of(dark)["paper"], dpi=120)
+
+
+def dress(ax: Axes, dark: bool) -> Axes:
+    theme = theme_of(dark)
+    ax.set_facecolor(theme["paper"])
+    ax.grid(True, which="major", color=theme["faint"], linewidth=0.5, alpha=0.35)
+    ax.set_axisbelow(True)
+    for side, spine in ax.spines.items():
+        spine.set(color=theme["faint"], visible=side in ("left", "bottom"))
+    ax.tick_params(which="both", colors=theme["ink"], labelsize=8)
+    for text in (ax.xaxis.label, ax.yaxis.label, ax.title):
+        text.set(color=theme["ink"], fontsize=9)
+    return ax
+
+
+def add_legend(figure: Figure, axes: Iterable[Axes], dark: bool) -> None:
+    entries = {label: handle for ax in axes for handle, label in zip(*ax.get_legend_handles_labels(), strict=True)}
+    legend = figure.legend(
+        entries.values(), entries.keys(), loc="outside lower center", ncols=min(len(entries), 5), frameon=False, fontsize=8
+    )
+    for text in legend.get_texts():
+        text.set_color(theme_of(dark)["ink"])
