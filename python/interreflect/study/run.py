@@ -21,6 +21,7 @@ from interreflect.study.sources import PACKAGE, source_digest
 from interreflect.study.store import FORMAT, Store, load_records
 from interreflect.study.study import Cell, Study
 from interreflect.study.timing import measure
+from interreflect.study.writer import Writer
 
 Metric = Callable[[Any, Any], float]
 ON_IMAGE: dict[str, Metric] = {
@@ -51,7 +52,7 @@ def run(study: Study, folder: str | Path, timeout: float | None = None, memory: 
             raise ValueError(f"run: {name} must be None, as cells run in this process without limits, got {value!r}")
     from tqdm import tqdm
 
-    store, bench = Store(folder), _Bench(study)
+    store = Store(folder)
     cells = study.cells()
     keys = [cell_key(study, cell) for cell in cells]
     labels = scene_labels(study)
@@ -60,12 +61,13 @@ def run(study: Study, folder: str | Path, timeout: float | None = None, memory: 
     # Scene by scene and method by method, so that cameras and seeds share one preparation.
     order = {(c.scene.hash, id(c.method)): i for i, c in reversed(list(enumerate(cells)))}
     planned = sorted(range(len(cells)), key=lambda i: (order[cells[i].scene.hash, id(cells[i].method)], i))
-    with tqdm(planned, desc=study.name, unit="cell", disable=None) as progress:
+    with Writer(store) as writer, tqdm(planned, desc=study.name, unit="cell", disable=None) as progress:
+        bench = _Bench(study, writer)
         for index in progress:
             cell, key = cells[index], keys[index]
             progress.set_postfix_str(f"{labels[cell.scene.hash]} {cell.method.name}")
             if store.read(key) is None:
-                store.write(*bench.measure(cell, key))
+                writer.record(bench.measure(cell, key))
     return load_records(folder)
 
 
@@ -110,20 +112,20 @@ def scene_labels(study: Study) -> dict[str, str]:
 class _Bench:
     """Measures cells one by one; keeps the preparation and the truths of the scene at hand."""
 
-    def __init__(self, study: Study) -> None:
-        self.study = study
+    def __init__(self, study: Study, writer: Writer) -> None:
+        self.study, self.writer = study, writer
         self.threads = study.threads or about().threads
         self.machine = about().asdict()
         self._prepared: tuple[tuple[str, Method], Prepared] | None = None
         self._truths: tuple[str, dict[str, Truth]] = ("", {})
 
-    def measure(self, cell: Cell, key: str) -> tuple[Record, Frame | None, Truth | None]:
-        """The cell's record with its frame and truth; what fails becomes a record that says so."""
+    def measure(self, cell: Cell, key: str) -> Record:
+        """The cell's record, its pictures given to the writer; what fails becomes a record that says so."""
         record = self._describe(cell, key)
         try:
             truth = self._truth(cell)
         except Exception as error:
-            return dataclasses.replace(record, status=FAILED, failure=f"reference: {_words(error)}"), None, None
+            return dataclasses.replace(record, status=FAILED, failure=f"reference: {_words(error)}")
         record = dataclasses.replace(record, noise=truth.noise, indirect_noise=truth.indirect_noise, truth=truth.key, truth_spp=truth.spp)
         try:
             prepared = self._prepare(cell.scene, cell.method)
@@ -131,13 +133,21 @@ class _Bench:
                 lambda: prepared.render(cell.camera, size=self.study.size, seed=cell.seed, threads=self.study.threads),
                 self.study.repeats,
                 self.study.max_repeats,
+                before_clock=self.writer.settle,
             )
             record = dataclasses.replace(
                 record, precompute_milliseconds=float(prepared.precompute_milliseconds), **dataclasses.asdict(timing)
             )
-            return self._compare(record, frame, truth), frame, truth
+            if frame.image.shape != truth.image.shape:
+                raise ValueError(f"the picture's shape must be {truth.image.shape}, got {frame.image.shape}")
         except Exception as error:
-            return dataclasses.replace(record, status=FAILED, failure=_words(error)), None, None
+            return dataclasses.replace(record, status=FAILED, failure=_words(error))
+        if self.study.images:
+            self.writer.pictures(key, frame, truth)
+        try:
+            return self._compare(dataclasses.replace(record, images=self.study.images), frame, truth)
+        except Exception as error:
+            return dataclasses.replace(record, status=FAILED, failure=_words(error))
 
     def _describe(self, cell: Cell, key: str) -> Record:
         warnings = list(cell.scene.warnings)
@@ -179,12 +189,10 @@ class _Bench:
     def _compare(self, record: Record, frame: Frame, truth: Truth) -> Record:
         """The record with status and metrics; a metric that this picture cannot have is NaN, with the reason as a warning."""
         image, indirect = frame.image, frame.indirect
-        if image.shape != truth.image.shape:
-            raise ValueError(f"the picture's shape must be {truth.image.shape}, got {image.shape}")
         wrong = sum(int(light.size - np.count_nonzero(np.isfinite(light))) for light in (image, indirect))
         if wrong:
             failure = f"{wrong} numbers of the picture are not finite"
-            return dataclasses.replace(record, status=NOT_FINITE, failure=failure, images=self.study.images)
+            return dataclasses.replace(record, status=NOT_FINITE, failure=failure)
         pairs = [(name, metric, image, truth.image) for name, metric in ON_IMAGE.items()]
         pairs += [(name, metric, indirect, truth.indirect) for name, metric in ON_INDIRECT.items()]
         values, reasons = {}, []
@@ -194,7 +202,7 @@ class _Bench:
             except ValueError as error:
                 values[name] = math.nan
                 reasons.append(f"{name}: {error}")
-        return dataclasses.replace(record, status=OK, metrics=values, warnings=(*record.warnings, *reasons), images=self.study.images)
+        return dataclasses.replace(record, status=OK, metrics=values, warnings=(*record.warnings, *reasons))
 
 
 def _words(error: Exception) -> str:

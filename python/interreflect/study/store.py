@@ -51,15 +51,16 @@ class Store:
             return None
         return record
 
-    def write(self, record: Record, frame: Frame | None, truth: Truth | None) -> None:
-        """Keep a cell. The pictures go first: the record says that they are there."""
-        if record.images and frame is not None and truth is not None:
-            # Unsynced: an archive torn by a power cut fails its own check, and the cell is measured again.
-            with replacing(self._image(record.key), sync=False) as file:
-                np.savez(file, allow_pickle=False, image=frame.image, indirect=frame.indirect)
-            if not self._truth(truth.key).exists():
-                with replacing(self._truth(truth.key), sync=False) as file:
-                    np.savez(file, allow_pickle=False, image=truth.image, indirect=truth.indirect)
+    def write_pictures(self, key: str, frame: Frame, truth: Truth) -> None:
+        """Keep the pictures of a cell and of its truth; before its record, which says that they are there."""
+        with replacing(self._image(key)) as file:
+            np.savez(file, allow_pickle=False, image=frame.image, indirect=frame.indirect)
+        if not self._truth(truth.key).exists():
+            with replacing(self._truth(truth.key)) as file:
+                np.savez(file, allow_pickle=False, image=truth.image, indirect=truth.indirect)
+
+    def write(self, record: Record) -> None:
+        """Keep a cell's record."""
         write_checked(self._cell(record.key), record.as_content(), FORMAT)
 
     def load(self) -> Records:

@@ -35,12 +35,16 @@ def settled(milliseconds: Sequence[float]) -> bool:
     return MEDIAN_FROM_MEAN * deviation <= SETTLED * median * math.sqrt(len(times))
 
 
-def measure(render: Callable[[], Frame], repeats: int, max_repeats: int) -> tuple[Frame, Timing]:
+def measure(
+    render: Callable[[], Frame], repeats: int, max_repeats: int, before_clock: Callable[[], None] = lambda: None
+) -> tuple[Frame, Timing]:
     """Render once to warm up, then `repeats` times, then on until the median settles or `max_repeats` is reached.
 
-    Times are those of the frames' own profiles, so nothing between the renders counts; garbage collection waits meanwhile.
+    `before_clock` is called once, after the warm-up. Times are those of the frames' own profiles, so nothing between the renders
+    counts; garbage collection waits meanwhile.
     """
     frame = render()
+    before_clock()
     profiles: list[Profile] = []
     collecting = gc.isenabled()
     gc.disable()
