@@ -3,11 +3,17 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import interreflect as ir
+
+if TYPE_CHECKING:
+    from rich.table import Table
+
+VARIED = ("grid.resolution", "share", "spp")
+NUMBERS = ("ms", "relMSE", "indirect", "energy", "FLIP")
 
 
 def methods() -> list[Any]:
@@ -36,29 +42,51 @@ def demo_study(sponza: bool) -> ir.Study:
     )
 
 
-def show(records: ir.Records) -> None:
-    from rich.console import Console
+def tables(records: ir.Records) -> list[Table]:
+    """A table a scene, narrow enough for a terminal of 80 columns."""
+    from rich import box
     from rich.table import Table
 
-    shown = Table(title="Time and error of every method (one indirect bounce)")
-    columns = ("scene", "method", "setting", "ms", "relMSE", "indirect relMSE", "energy", "FLIP")
-    for column in columns:
-        shown.add_column(column, justify="left" if column in columns[:3] else "right")
-    for row in records.table.to_dict("records"):
-        known = [name for name in ("grid.resolution", "share", "spp") if row.get(name) is not None and row[name] == row[name]]
-        setting = ", ".join(f"{name}={row[name]:g}" if isinstance(row[name], float) else f"{name}={row[name]}" for name in known)
-        numbers = [f"{row[key]:.4g}" for key in ("milliseconds", "relmse", "indirect_relmse", "energy_ratio", "flip")]
-        shown.add_row(str(row["scene"]), str(row["method"]), setting, *numbers)
-    Console().print(shown)
+    made = []
+    for scene, rows in records.table.groupby("scene", sort=False):
+        shown = Table(
+            title=f"{scene}: time, relMSE of all light and of indirect light",
+            box=box.SIMPLE_HEAD,
+            padding=(0, 1, 0, 0),
+            pad_edge=False,
+            show_edge=False,
+        )
+        shown.add_column("method", no_wrap=True)
+        shown.add_column("setting", no_wrap=True)
+        for column in NUMBERS:
+            shown.add_column(column, justify="right", no_wrap=True)
+        for row in rows.to_dict("records"):
+            errors = [f"{row[name]:.3g}" for name in ("relmse", "indirect_relmse")]
+            numbers = [f"{row['milliseconds']:.0f}", *errors, f"{row['energy_ratio']:.3f}", f"{row['flip']:.3f}"]
+            shown.add_row(str(row["method"]), _setting(row), *numbers)
+        made.append(shown)
+    return made
+
+
+def _setting(row: Mapping[Any, Any]) -> str:
+    """The knobs that `methods` varies."""
+    known = {name: row[name] for name in VARIED if row.get(name) is not None and row[name] == row[name]}
+    if known.get("share") == ir.methods.VoxelConeTracing().knobs()["share"]:
+        del known["share"]
+    return "\n".join(f"{name.rpartition('.')[2]} {value:g}" if isinstance(value, float) else str(value) for name, value in known.items())
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
     parser = argparse.ArgumentParser(prog="./run demo", description=__doc__)
     parser.add_argument("scene", nargs="?", choices=["sponza"], help="instead of the built-in scenes")
     given = parser.parse_args(arguments)
+    from rich.console import Console
+
     folder = Path("results") / ("demo-sponza" if given.scene else "demo")
     records = ir.run(demo_study(given.scene == "sponza"), folder)
-    show(records)
+    console = Console()
+    for table in tables(records):
+        console.print(table)
     ir.charts.speed_accuracy(records).savefig(folder / "speed_accuracy.png", dpi=150)
     ir.charts.stages(records).savefig(folder / "stages.png", dpi=150)
     ir.charts.images(records).savefig(folder / "images.png", dpi=150)
