@@ -1,4 +1,4 @@
-"""Our scenes in Mitsuba 3: an independent witness of light transport. Diffuse materials, textures, emitters, all lights but spots."""
+"""Our scenes in Mitsuba 3, an independent witness of light transport: all but masks, emission maps, spots and images of the sky."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import os
 from pathlib import Path
 from typing import Any
 
+import mitsuba_lobe
 import numpy as np
 from numpy.typing import NDArray
 
@@ -21,6 +22,7 @@ def load_mitsuba() -> Any:
         if library is not None:
             os.environ.setdefault("DRJIT_LIBLLVM_PATH", str(library))
         mi.set_variant("llvm_ad_rgb" if "DRJIT_LIBLLVM_PATH" in os.environ else "scalar_rgb")
+        mitsuba_lobe.register(mi)
     return mi
 
 
@@ -37,10 +39,17 @@ def _reflectance(mi: Any, material: ir.Material, has_texcoords: bool) -> Any:
 
 
 def _bsdf(mi: Any, material: ir.Material, has_texcoords: bool) -> Any:
-    if max(material.specular) > 0 or material.emission_map is not None or material.mask is not None:
-        raise ValueError(f"material {material.name!r} has a lobe, an emission map or a mask, which this witness leaves out")
-    diffuse = {"type": "diffuse", "reflectance": _reflectance(mi, material, has_texcoords)}
-    return mi.load_dict({"type": "twosided", "bsdf": diffuse} if material.two_sided else diffuse)
+    if material.emission_map is not None or material.mask is not None:
+        raise ValueError(f"material {material.name!r} has an emission map or a mask, which this witness leaves out")
+    reflectance = _reflectance(mi, material, has_texcoords)
+    made: dict[str, Any] = {"type": "diffuse", "reflectance": reflectance}
+    if max(material.specular) > 0:
+        n, roughness = material.exponent, 0.5 if material.roughness is None else material.roughness
+        alpha = roughness**2 if n is None else (2 / (n + 2)) ** 0.5
+        specular = {f"specular_{c}": float(v) for c, v in zip("rgb", material.specular, strict=True)}
+        texture = mi.load_dict(reflectance) if isinstance(reflectance, dict) else reflectance
+        made = {"type": "scene_format_lobe", "albedo": texture, "lobe": material.lobe, "alpha": alpha, "exponent": n or 0.0, **specular}
+    return mi.load_dict({"type": "twosided", "bsdf": made} if material.two_sided else made)
 
 
 def _mesh(mi: Any, scene: ir.Scene, mesh: ir.Mesh, name: str, bsdfs: dict[Any, Any]) -> Any:

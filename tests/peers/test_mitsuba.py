@@ -36,6 +36,22 @@ def test_cornell_box_agrees_with_mitsuba(bounces: int | None) -> None:
     assert_same(witness.diffuse(ir.scenes.cornell_box()), (64, 64), bounces, spp=64)
 
 
+LOBES = {
+    "ggx": {"roughness": 0.4},  # alpha .16
+    "rough ggx": {"roughness": 0.9},
+    "phong": {"lobe": "phong", "exponent": 20.0},
+    "blinn-phong": {"lobe": "blinn-phong", "exponent": 40.0},
+}
+
+
+@pytest.mark.parametrize("bounces", [0, 2])
+@pytest.mark.parametrize("lobe", LOBES)
+def test_glossy_surfaces_agree_with_mitsuba(lobe: str, bounces: int) -> None:
+    surface = {"albedo": (0.3, 0.25, 0.2), "specular": (0.4, 0.5, 0.6), **LOBES[lobe]}
+    scene = witness.diffuse(ir.scenes.cornell_box()).replace(materials={"white": surface, "tall block": surface})
+    assert_same(scene, (64, 64), bounces, spp=64)
+
+
 @pytest.mark.long
 @pytest.mark.parametrize("bounces", [1, None])
 def test_atrium_agrees_with_mitsuba(bounces: int | None) -> None:
