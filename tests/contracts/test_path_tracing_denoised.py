@@ -23,10 +23,11 @@ def test_the_share_of_direct_light_is_taken_over_blocks() -> None:
 @pytest.mark.parametrize("scale", [1.0, 0.5])
 def test_denoising_brings_a_picture_of_few_samples_closer_to_the_truth(scale: float) -> None:
     pytest.importorskip("pyoidn", reason="the extra `denoise` is not installed")
+    # at half size a picture of 96 x 96 is so small that the ratio of errors lies between .36 and .78 over eight seeds; here below .2
     scene = ir.scenes.cornell_box()
-    truth = ir.methods.PathTracing(spp=256, bounces=1).render(scene, size=(96, 96), seed=9)
-    noisy = ir.methods.PathTracing(spp=1, bounces=1).render(scene, size=(96, 96))
-    clean = ir.methods.PathTracingDenoised(spp=1, bounces=1, scale=scale).render(scene, size=(96, 96))
+    truth = ir.methods.PathTracing(spp=256, bounces=1).render(scene, size=(128, 128), seed=9)
+    noisy = ir.methods.PathTracing(spp=1, bounces=1).render(scene, size=(128, 128))
+    clean = ir.methods.PathTracingDenoised(spp=1, bounces=1, scale=scale).render(scene, size=(128, 128))
     for part in ("image", "indirect"):
         errors = [ir.metrics.relmse(getattr(frame, part), getattr(truth, part)) for frame in (noisy, clean)]
         assert errors[1] < 0.5 * errors[0]

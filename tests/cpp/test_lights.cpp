@@ -5,7 +5,6 @@
 #include "math/rng.h"
 #include "math/sampling.h"
 #include "shading/lights.h"
-#include "shading/spherical_triangle.h"
 
 namespace interreflect {
 namespace {
@@ -131,17 +130,64 @@ TEST(Lights, NoLightComesFromTheBackOfAnEmitter) {
     }
 }
 
-TEST(Lights, SphericalTriangleIsSampledUniformly) {
-    const vec3 a = glm::normalize(vec3(1, .1f, 0)), b = glm::normalize(vec3(0, 1, .2f)), c = glm::normalize(vec3(.1f, 0, 1));
-    Rng rng(2, 2);
-    vec3 mean(0), expected(0);
-    for (int i = 0; i < samples; ++i) mean += sample_spherical_triangle(a, b, c, {rng.uniform(), rng.uniform()}) / float(samples);
-    // The vector area of a spherical triangle: half the sum over its edges of the arc times the edge plane's normal.
-    for (const auto& [p, q] : {std::pair{a, b}, {b, c}, {c, a}})
-        expected += .5f * std::acos(glm::dot(p, q)) * glm::normalize(glm::cross(p, q));
-    expected /= solid_angle(a, b, c);
-    for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(mean[axis], expected[axis], 5 / std::sqrt(samples) * .5);
-    EXPECT_NEAR(solid_angle({1, 0, 0}, {0, 1, 0}, {0, 0, 1}), pi / 2, 1e-6);  // an octant
+/// One emitter shape around the origin, which is near it.
+EmitterShape shape_of(const vec3& a, const vec3& b, const vec3& c, bool rectangle) {
+    EmitterShape shape{a, b - a, c - a, glm::normalize(glm::cross(b - a, c - a)), {}};
+    if (glm::dot(shape.normal, a) > 0) shape.normal = -shape.normal;
+    shape.area = glm::length(glm::cross(b - a, c - a)) * (rectangle ? 1.0f : 0.5f);
+    shape.near2 = 1e6f, shape.luminance = 1, shape.rectangle = rectangle;
+    return shape;
+}
+
+TEST(Lights, NearShapesAreSampledUniformlyInTheirSolidAngle) {
+    const vec3 a(1, .1f, 0), b(0, 1, .2f), c(.1f, 0, 1);
+    const vec3 p(-.4f, 1.2f, .3f), q = p + vec3(1.5f, .5f, 0), r = p + vec3(-.2f, .6f, .5f);  // dot(q - p, r - p) = 0
+    for (const auto& [shape, corners] : {std::pair{shape_of(a, b, c, false), std::vector{a, b, c}},
+                                         {shape_of(p, q, r, true), std::vector{p, q, q + r - p, r}}}) {
+        const std::span<const EmitterShape> shapes(&shape, 1);
+        Rng rng(2, 2);
+        vec3 mean(0), expected(0);
+        float pdf = 0;
+        for (int i = 0; i < samples; ++i) {
+            const auto light = sample_shapes(shapes, vec3(0), .5f, {rng.uniform(), rng.uniform()});
+            mean += light.direction / float(samples);
+            pdf = light.pdf;
+            if (i < 100) {
+                EXPECT_NEAR(glm::dot(light.direction * light.distance - shape.corner, shape.normal), 0, 1e-5);
+                EXPECT_NEAR(shapes_pdf(shapes, vec3(0), light.direction, 0), light.pdf, 1e-5f * light.pdf);
+            }
+        }
+        // The vector area of a spherical polygon: half the sum over its edges of the arc times the edge plane's normal. Its
+        // solid angle: the sum of its corners' angles.
+        double angle = -(double(corners.size()) - 2) * std::numbers::pi;
+        for (std::size_t i = 0; i < corners.size(); ++i) {
+            const auto at = [&](std::size_t k) { return glm::normalize(glm::dvec3(corners[(i + k) % corners.size()])); };
+            const glm::dvec3 across = glm::cross(at(0), at(1)), next = glm::cross(at(1), at(2));
+            expected += vec3(.5 * std::asin(glm::length(across)) * glm::normalize(across));
+            angle += std::numbers::pi - std::acos(glm::dot(glm::normalize(across), glm::normalize(next)));
+        }
+        EXPECT_NEAR(pdf, 1 / angle, 1e-5 / angle);
+        for (int axis = 0; axis < 3; ++axis)
+            EXPECT_NEAR(mean[axis], (glm::dot(expected, mean) > 0 ? 1 : -1) * expected[axis] / angle,
+                        5 / std::sqrt(samples) * .5);
+    }
+}
+
+TEST(Lights, FarAndNearSamplingGiveTheSameIrradiance) {
+    const vec3 p(-.4f, 1.2f, .3f), q = p + vec3(.75f, .25f, 0), r = p + vec3(-.2f, .6f, .5f);
+    for (const bool rectangle : {false, true}) {
+        EmitterShape shape = shape_of(p, q, r, rectangle);
+        shape.to_middle = (shape.edge1 + shape.edge2) / (rectangle ? 2.0f : 3.0f);
+        Estimate e[2];
+        for (const bool near : {false, true}) {
+            shape.near2 = near ? 1e6f : 0.0f;
+            e[near] = average([&](Rng& rng) {
+                const auto light = sample_shapes({&shape, 1}, vec3(0), .5f, {rng.uniform(), rng.uniform()});
+                return light.pdf > 0 ? std::fmax(0.0f, light.direction.y) / light.pdf : 0.0f;
+            });
+        }
+        EXPECT_NEAR(e[0].mean, e[1].mean, 5 * std::hypot(e[0].error, e[1].error));
+    }
 }
 
 Environment gradient(int width, int height) {

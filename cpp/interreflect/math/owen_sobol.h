@@ -26,12 +26,14 @@ inline std::uint32_t owen_scramble(std::uint32_t x, std::uint32_t seed) {
     return reverse_bits(laine_karras(reverse_bits(x), seed));
 }
 
-/// The second Sobol dimension; the first is reverse_bits.
-inline std::uint32_t sobol_second(std::uint32_t index) {
-    std::uint32_t x = 0;
-    for (std::uint32_t v = 0x80000000U; index != 0; index >>= 1, v ^= v >> 1)
-        if ((index & 1U) != 0) x ^= v;
-    return x;
+/// The second Sobol dimension, its bits reversed; the first is reverse_bits. Its generator matrix is Pascal's triangle modulo 2:
+/// bit i is the sum of the index's bits j of which i is a subset (Lucas), a transform of five steps.
+inline std::uint32_t reversed_sobol_second(std::uint32_t x) {
+    x ^= x >> 16 & 0x0000ffffU;
+    x ^= x >> 8 & 0x00ff00ffU;
+    x ^= x >> 4 & 0x0f0f0f0fU;
+    x ^= x >> 2 & 0x33333333U;
+    return x ^ (x >> 1 & 0x55555555U);
 }
 
 struct Bits2 {
@@ -41,7 +43,7 @@ struct Bits2 {
 inline Bits2 owen_sobol(std::uint32_t index, std::uint32_t key) {
     const std::uint32_t shuffled = owen_scramble(index, hash32(key));
     return {reverse_bits(laine_karras(shuffled, hash32(key ^ 0x9e3779b9U))),
-            owen_scramble(sobol_second(shuffled), hash32(key ^ 0x7f4a7c15U))};
+            reverse_bits(laine_karras(reversed_sobol_second(shuffled), hash32(key ^ 0x7f4a7c15U)))};
 }
 
 }  // namespace interreflect

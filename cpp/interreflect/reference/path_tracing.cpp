@@ -85,7 +85,8 @@ PathTraced path_trace(const Scene& scene, const Intersector& intersector, const 
                               settings.bounces.value_or(Integrand::every_vertex),
                               settings.pixel,
                               settings.pattern,
-                              settings.seed};
+                              settings.seed,
+                              SurfaceKernel(scene)};
     const std::size_t pixels = static_cast<std::size_t>(width) * height;
     PathTraced result;
     result.width = width, result.height = height;

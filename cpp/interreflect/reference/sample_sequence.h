@@ -13,15 +13,15 @@ class SampleSequence {
   public:
     SampleSequence(std::uint32_t seed, std::uint32_t tile) : key_(hash_combine(hash32(seed), tile)) {}
 
-    /// Pair number `dimension` of sample s of pattern k, in [0, 1)^2.
-    vec2 pair(std::uint32_t dimension, std::uint32_t s, std::uint32_t k) const {
-        return join(of_sample(dimension, s), of_pattern(dimension, k));
+    /// Pairs number `dimension` of sample s, in [0, 1)^2, of patterns 0 .. n - 1.
+    void pairs(std::uint32_t dimension, std::uint32_t s, std::uint32_t n, float* x, float* y) const {
+        const Bits2 a = owen_sobol(s, hash_combine(key_, 2 * dimension));
+        const std::uint32_t key = hash_combine(key_, 2 * dimension + 1);
+        for (std::uint32_t k = 0; k < n; ++k) {
+            const Bits2 b = owen_sobol(k, key);
+            x[k] = unit_float(a.x ^ b.x), y[k] = unit_float(a.y ^ b.y);
+        }
     }
-    Bits2 of_sample(std::uint32_t dimension, std::uint32_t s) const { return owen_sobol(s, hash_combine(key_, 2 * dimension)); }
-    Bits2 of_pattern(std::uint32_t dimension, std::uint32_t k) const {
-        return owen_sobol(k, hash_combine(key_, 2 * dimension + 1));
-    }
-    static vec2 join(const Bits2& a, const Bits2& b) { return {unit_float(a.x ^ b.x), unit_float(a.y ^ b.y)}; }
 
   private:
     std::uint32_t key_;

@@ -1,23 +1,19 @@
 #include "reference/tile_tracer.h"
 
 #include <algorithm>
+#include <cstring>
 #include <limits>
 
-#include "math/sampling.h"
-#include "shading/brdf.h"
-#include "visibility/surface_prefetch.h"
 #include "visibility/trace_gbuffer.h"
 
 namespace interreflect {
 namespace {
 
-constexpr float most_survival = 0.95f;  // roulette ends even a path that loses nothing
-constexpr int first_roulette = 2;       // vertex
+constexpr int first_roulette = 2;  // vertex
 constexpr float infinity = std::numeric_limits<float>::infinity();
+constexpr std::uint32_t none = ~0U;
 
 float power_heuristic(float a, float b) { return a > 0.0f ? 1.0f / (1.0f + (b / a) * (b / a)) : 0.0f; }
-bool glossy(const SurfacePoint& at) { return max_component(at.specular) > 0.0f; }
-bool reflects(const SurfacePoint& at) { return max_component(at.albedo) > 0.0f || glossy(at); }
 
 /// The bits of x and y in turn.
 std::uint32_t morton(std::uint32_t x, std::uint32_t y) {
@@ -26,25 +22,25 @@ std::uint32_t morton(std::uint32_t x, std::uint32_t y) {
     return code;
 }
 
+/// Rays [first, first + 16) of columns; returns the lanes that there are.
+template <class Rays>
+std::uint32_t fill_packet(const Rays& rays, std::uint32_t first, RayPacket& packet) {
+    constexpr std::size_t bytes = sizeof(RayPacket::Lanes);
+    std::memcpy(packet.origin_x, rays.origin.x + first, bytes);
+    std::memcpy(packet.origin_y, rays.origin.y + first, bytes);
+    std::memcpy(packet.origin_z, rays.origin.z + first, bytes);
+    std::memcpy(packet.direction_x, rays.direction.x + first, bytes);
+    std::memcpy(packet.direction_y, rays.direction.y + first, bytes);
+    std::memcpy(packet.direction_z, rays.direction.z + first, bytes);
+    std::fill_n(packet.near, RayPacket::width, 0.0f);
+    const std::uint32_t left = rays.count - first;
+    return left >= RayPacket::width ? 0xffffU : (1U << left) - 1U;
+}
+
 }  // namespace
 
-void ShadowBatch::add(const SurfacePoint& at, const vec3& direction, float distance, const vec3& radiance, std::uint32_t to) {
-    // The ray ends short of an emitter by more than rounding moves either end.
-    rays.push_back({at.position + at.geometric_normal * at.offset, 0.0f, direction, distance * 0.9999f - 2.0f * at.offset});
-    light.push_back(radiance);
-    pixel.push_back(to);
-}
-
-void ShadowBatch::trace(const Intersector& intersector, bool coherent, std::vector<vec3>& image, Counts& counts) {
-    blocked.resize(rays.size());
-    coherent ? intersector.occluded_coherent(rays, blocked) : intersector.occluded_incoherent(rays, blocked);
-    for (std::size_t i = 0; i < rays.size(); ++i)
-        if (blocked[i] == 0) image[pixel[i]] += light[i];
-    counts.shadow_rays += rays.size();
-    rays.clear(), light.clear(), pixel.clear();
-}
-
-TileTracer::TileTracer(const Integrand& integrand) : in_(integrand) {
+TileTracer::TileTracer(const Integrand& integrand)
+    : in_(integrand), at_(std::make_unique<Workspace>()), paths_(&at_->vertices[0]), next_(&at_->vertices[1]) {
     pattern_of_pixel_.resize(tracing_tile_pixels);
     const auto n = static_cast<std::uint32_t>(in_.pattern);
     for (std::uint32_t i = 0; i < tracing_tile_pixels; ++i)
@@ -57,28 +53,44 @@ TileTracer::TileTracer(const Integrand& integrand) : in_(integrand) {
     };
     std::sort(whole_by_block_.begin(), whole_by_block_.end(), [&](auto i, auto j) { return block(i) < block(j); });
     std::sort(whole_by_pattern_.begin(), whole_by_pattern_.end(), [&](auto i, auto j) { return place(i) < place(j); });
-    const std::uint32_t patterns = *std::max_element(pattern_of_pixel_.begin(), pattern_of_pixel_.end()) + 1;
-    for (auto& table : of_pattern_) table.resize(patterns);
-    place_of_pattern_.resize(patterns);
-    first_.resize(tracing_tile_pixels), first_direction_.resize(tracing_tile_pixels), first_emission_.resize(tracing_tile_pixels);
-    first_hit_.resize(tracing_tile_pixels);
-    for (auto& surfaces : surfaces_) surfaces.resize(tracing_tile_pixels);
+    patterns_ = *std::max_element(pattern_of_pixel_.begin(), pattern_of_pixel_.end()) + 1;
 }
 
-/// The orders of a whole tile, without what lies beyond the picture's border.
+/// The pixels of a whole tile in their orders, without what lies beyond the picture's border.
 void TileTracer::make_orders(const Tile& tile) {
     const auto inside = [&](std::uint32_t i) {
         return tile.x0 + static_cast<int>(i % tracing_tile) < tile.x1 && tile.y0 + static_cast<int>(i / tracing_tile) < tile.y1;
     };
-    by_block_.clear(), by_pattern_.clear();
-    std::copy_if(whole_by_block_.begin(), whole_by_block_.end(), std::back_inserter(by_block_), inside);
+    by_pattern_.clear();
     std::copy_if(whole_by_pattern_.begin(), whole_by_pattern_.end(), std::back_inserter(by_pattern_), inside);
+    StepLanes& primary = at_->primary;
+    primary.count = 0;
+    for (const auto pixel : whole_by_block_) {
+        if (!inside(pixel)) continue;
+        const std::uint32_t i = primary.count++;
+        primary.pixel[i] = pixel;
+        primary.pattern[i] = pattern_of_pixel_[pixel];
+        primary.origin.set(i, in_.camera.origin);
+        primary.throughput.set(i, vec3(1));
+    }
 }
 
-void TileTracer::load_pair(Pair which, int vertex, int sample) {
-    const std::uint32_t dimension = 1 + static_cast<std::uint32_t>(vertex) * pairs_a_vertex + which;
-    of_sample_[which] = sequence_->of_sample(dimension, static_cast<std::uint32_t>(sample));
-    for (std::uint32_t k = 0; k < of_pattern_[which].size(); ++k) of_pattern_[which][k] = sequence_->of_pattern(dimension, k);
+void TileTracer::load_pairs(int vertex, int sample) {
+    for (const Pair which : {emitter_point, environment_point, reflection, choices, roulette}) {
+        if (which == roulette && !roulette_at(vertex)) continue;
+        if (which == emitter_point && !in_.lights.has_emitters()) continue;
+        if (which == environment_point && !in_.lights.has_environment()) continue;
+        const std::uint32_t dimension = 1 + static_cast<std::uint32_t>(vertex) * pairs_a_vertex + which;
+        sequence_->pairs(dimension, static_cast<std::uint32_t>(sample), patterns_, at_->pairs[which].x, at_->pairs[which].y);
+    }
+}
+
+/// Places in the pixel.
+void TileTracer::load_places(int sample) {
+    PairTable& places = at_->places;
+    if (!repeats()) return sequence_->pairs(0, static_cast<std::uint32_t>(sample), patterns_, places.x, places.y);
+    std::fill_n(places.x, patterns_, 0.5f);
+    std::fill_n(places.y, patterns_, 0.5f);
 }
 
 void TileTracer::trace(const Tile& tile, int first, int end) {
@@ -87,191 +99,222 @@ void TileTracer::trace(const Tile& tile, int first, int end) {
     counts_ = Counts{};
     for (auto* image : {&direct_, &indirect_, &certain_}) image->assign(tracing_tile_pixels, vec3(0));
     make_orders(tile);
-    if (!repeats())
-        for (std::uint32_t k = 0; k < place_of_pattern_.size(); ++k) place_of_pattern_[k] = sequence.of_pattern(0, k);
     if (repeats()) {
-        trace_primary(tile, sequence, first);
-        if (first == 0) add_first_lights(certain_);
+        load_places(first);
+        trace_primary(tile, certain_);
+        if (first == 0)
+            add_delta_lights(at_->first, true, certain_);
+        else
+            certain_.assign(tracing_tile_pixels, vec3(0));
     }
     for (int sample = first; sample < end; ++sample) {
         if (!repeats()) {
-            trace_primary(tile, sequence, sample);
-            add_first_lights(direct_);
+            load_places(sample);
+            trace_primary(tile, direct_);
+            add_delta_lights(at_->first, true, direct_);
         }
         trace_sample(sample);
     }
-    counts_.paths += by_block_.size() * static_cast<std::size_t>(end - first);
+    counts_.paths += by_pattern_.size() * static_cast<std::size_t>(end - first);
 }
 
-/// Emission of the first hits and what delta lights do there.
-void TileTracer::add_first_lights(std::vector<vec3>& to) {
-    for (const auto pixel : by_block_) to[pixel] += first_emission_[pixel];
-    for (int light = 0; light < in_.lights.delta_count(); ++light) {
-        for (const auto pixel : by_block_)
-            if (first_hit_[pixel] != 0) add_delta(light, first_[pixel], first_direction_[pixel], vec3(1), pixel);
-        shadows_.trace(in_.rays, true, to, counts_);
-    }
-}
-
-void TileTracer::trace_primary(const Tile& tile, const SampleSequence& sequence, int sample) {
-    const std::size_t count = by_block_.size();
-    rays_.resize(count), hits_.resize(count);
-    const Bits2 of_sample = sequence.of_sample(0, static_cast<std::uint32_t>(sample));
-    const auto place_of = [&](std::uint32_t pixel) {
-        vec2 place(0.5f);
-        if (in_.pixel == PixelFilter::box) place = SampleSequence::join(of_sample, place_of_pattern_[pattern_of_pixel_[pixel]]);
-        return vec2(static_cast<float>(tile.x0 + static_cast<int>(pixel % tracing_tile)) + place.x,
-                    static_cast<float>(tile.y0 + static_cast<int>(pixel / tracing_tile)) + place.y);
-    };
-    for (std::size_t i = 0; i < count; ++i) {
-        const vec2 place = place_of(by_block_[i]);
-        rays_[i] = {in_.camera.origin, 0.0f, in_.camera.direction(place.x, place.y)};
-    }
-    in_.rays.nearest_coherent(rays_, hits_);
-    counts_.rays += count;
-    const SurfacePrefetch prefetch(in_.scene, hits_);
-    for (std::size_t i = 0; i < count; ++i) {
-        prefetch.at(i);
-        const std::uint32_t pixel = by_block_[i];
-        const vec3 direction = first_direction_[pixel] = rays_[i].direction;
-        first_hit_[pixel] = hits_[i].valid();
-        first_emission_[pixel] = vec3(0);
-        if (!hits_[i].valid()) {
-            if (in_.lights.has_environment()) first_emission_[pixel] = in_.lights.environment(direction);
-            continue;
+/// Traces rays and puts the surfaces that they met, and that reflect, into `paths` unless it is null. `alone`: every hit is
+/// shaded by itself. meeting.surface(step, hit): that surface, its emission accounted for; meeting.missed(step).
+template <class Meeting>
+void TileTracer::trace_steps(const StepLanes& steps, bool alone, const Meeting& meeting, PathLanes* paths) {
+    counts_.rays += steps.count;
+    for (std::uint32_t begin = 0; begin < steps.count; begin += together * RayPacket::width) {
+        const int packets = static_cast<int>(std::min<std::uint32_t>(together, (steps.count - begin + 15) / RayPacket::width));
+        std::uint32_t active[together], plain[together];
+        for (int k = 0; k < packets; ++k) {
+            active[k] = fill_packet(steps, begin + k * RayPacket::width, at_->rays[k]);
+            std::fill_n(at_->rays[k].far, RayPacket::width, infinity);
+            in_.rays.nearest(at_->rays[k], active[k]);
+            prefetch_hits(in_.surfaces, at_->rays[k]);
         }
-        const vec2 place = place_of(pixel);
-        const Footprint footprint =
-            in_.pixel == PixelFilter::centre ? pixel_footprint(in_.scene, hits_[i], in_.camera, place.x, place.y) : Footprint{};
-        first_[pixel] = surface_at(in_.scene, hits_[i], direction, footprint);
-        first_emission_[pixel] = first_[pixel].emission;
+        for (int k = 0; k < packets; ++k) plain[k] = alone ? 0 : plain_surfaces(in_.surfaces, at_->rays[k], active[k]);
+        if (paths != nullptr)
+            for (int k = 0; k < packets; ++k)
+                if (plain[k] != 0) place_surfaces(in_.surfaces, at_->rays[k], plain[k], at_->surfaces[k]);
+        for (int k = 0; k < packets; ++k) {
+            const RayPacket& rays = at_->rays[k];
+            SurfacePacket& surfaces = at_->surfaces[k];
+            const std::uint32_t first = begin + k * RayPacket::width;
+            std::uint32_t met = plain[k];
+            if (paths != nullptr && plain[k] != 0) texture_surfaces(in_.surfaces, plain[k], surfaces);
+            for (std::uint32_t left = active[k] & ~plain[k]; left != 0; left &= left - 1) {
+                const int lane = __builtin_ctz(left);
+                if (!rays.met(lane)) {
+                    meeting.missed(first + lane);
+                    continue;
+                }
+                met |= 1U << lane;
+                surfaces.set(lane, meeting.surface(first + lane, rays.hit(lane)));
+            }
+            if (paths != nullptr) append_paths(surfaces, met, steps, first, *paths);
+        }
     }
+}
+
+void TileTracer::trace_primary(const Tile& tile, std::vector<vec3>& to) {
+    choose_primary_rays(in_.camera, tile.x0, tile.y0, at_->places, at_->primary);
+    struct Meeting {
+        const TileTracer& tracer;
+        const Tile& tile;
+        std::vector<vec3>& to;
+        void missed(std::uint32_t i) const {
+            const StepLanes& rays = tracer.at_->primary;
+            if (tracer.in_.lights.has_environment()) to[rays.pixel[i]] += tracer.in_.lights.environment(rays.direction.at(i));
+        }
+        SurfacePoint surface(std::uint32_t i, const Hit& hit) const {
+            const Integrand& in = tracer.in_;
+            const StepLanes& rays = tracer.at_->primary;
+            const std::uint32_t pixel = rays.pixel[i];
+            const vec2 corner(static_cast<float>(tile.x0 + static_cast<int>(pixel % tracing_tile)),
+                              static_cast<float>(tile.y0 + static_cast<int>(pixel / tracing_tile)));
+            const Footprint footprint =
+                tracer.repeats() ? pixel_footprint(in.scene, hit, in.camera, corner.x + 0.5f, corner.y + 0.5f) : Footprint{};
+            const SurfacePoint point = surface_at(in.scene, hit, rays.direction.at(i), footprint);
+            to[pixel] += point.emission;
+            return point;
+        }
+    };
+    at_->first.clear();
+    trace_steps(at_->primary, repeats(), Meeting{*this, tile, to}, &at_->first);
 }
 
 void TileTracer::trace_sample(int sample) {
-    paths_.clear();
+    std::array<std::uint32_t, tracing_tile_pixels> path_of_pixel;
+    path_of_pixel.fill(none);
+    for (std::uint32_t i = 0; i < at_->first.count; ++i) path_of_pixel[at_->first.pixel[i]] = i;
+    std::uint32_t count = 0;
     for (const auto pixel : by_pattern_)
-        if (first_hit_[pixel] != 0 && reflects(first_[pixel]))
-            paths_.push_back({first_direction_[pixel], vec3(1), pixel, pattern_of_pixel_[pixel], &first_[pixel]});
-    for (int vertex = 0; !paths_.empty(); ++vertex) {
-        for (const Pair which : {emitter_point, environment_point, reflection, choices, roulette})
-            load_pair(which, vertex, sample);
-        if (vertex > 0) add_delta_lights(vertex);
+        if (path_of_pixel[pixel] != none) at_->order[count++] = path_of_pixel[pixel];
+    reorder_paths(at_->first, at_->order, count, *paths_);
+    for (int vertex = 0; paths_->count != 0; ++vertex) {
+        load_pairs(vertex, sample);
+        if (vertex > 0) add_delta_lights(*paths_, false, image(vertex));
         if (in_.lights.has_emitters()) add_emitters(vertex);
         if (in_.lights.has_environment()) add_environment(vertex);
-        choose_steps(vertex);
         take_steps(vertex);
     }
 }
 
-/// Whether the reflection's own ray is traced too. A diffuse vertex that is the last finds its light by light samples alone.
-bool TileTracer::continues(const SurfacePoint& at, int vertex) const {
-    return vertex < in_.last_vertex || glossy(at) || in_.lights.emitters_are_many();
+/// Whether the reflection's own ray is traced from diffuse vertices too: the last one finds its light by light samples alone.
+bool TileTracer::continue_all(int vertex) const { return vertex < in_.last_vertex || in_.lights.emitters_are_many(); }
+
+bool TileTracer::roulette_at(int vertex) const { return in_.last_vertex == Integrand::every_vertex && vertex >= first_roulette; }
+
+Connecting TileTracer::connecting(const PathLanes& paths, int vertex, bool weighed) {
+    return {paths, in_.scene.materials, weighed, continue_all(vertex), at_->shadows};
 }
 
-void TileTracer::add_delta(int number, const SurfacePoint& at, const vec3& direction, const vec3& throughput,
-                           std::uint32_t pixel) {
-    const auto light = in_.lights.delta(number, at.position);
-    const float cosine = glm::dot(at.normal, light.direction);
-    if (cosine <= 0.0f || max_component(light.irradiance) <= 0.0f) return;
-    const vec3 reflected = throughput * evaluate_brdf(at, -direction, light.direction) * light.irradiance * cosine;
-    if (max_component(reflected) > 0.0f) shadows_.add(at, light.direction, light.distance, reflected, pixel);
-}
-
-void TileTracer::add_delta_lights(int vertex) {
-    for (int light = 0; light < in_.lights.delta_count(); ++light) {
-        for (const Path& path : paths_) add_delta(light, *path.at, path.direction, path.throughput, path.pixel);
-        shadows_.trace(in_.rays, false, image(vertex), counts_);
+void TileTracer::trace_shadows(bool coherent, std::vector<vec3>& to) {
+    (void)coherent;
+    ShadowLanes& shadows = at_->shadows;
+    counts_.shadow_rays += shadows.count;
+    RayPacket& packet = at_->rays[0];
+    for (std::uint32_t first = 0; first < shadows.count; first += RayPacket::width) {
+        const std::uint32_t active = fill_packet(shadows, first, packet);
+        std::memcpy(packet.far, shadows.far + first, sizeof(packet.far));
+        for (std::uint32_t open = active & ~in_.rays.occluded(packet, active); open != 0; open &= open - 1) {
+            const std::uint32_t i = first + static_cast<std::uint32_t>(__builtin_ctz(open));
+            to[shadows.pixel[i]] += shadows.light.at(i);
+        }
     }
+    shadows.count = 0;
 }
 
-void TileTracer::add_light_sample(const Path& path, const LightDirection& light, bool continues) {
-    const SurfacePoint& at = *path.at;
-    const float cosine = glm::dot(at.normal, light.direction);
-    if (light.pdf <= 0.0f || cosine <= 0.0f) return;
-    const BrdfValue f = evaluate_brdf_and_pdf(at, -path.direction, light.direction);
-    const float weight = continues ? power_heuristic(light.pdf, f.pdf) : 1.0f;
-    const vec3 reflected = path.throughput * f.value * light.radiance * (cosine * weight / light.pdf);
-    if (max_component(reflected) > 0.0f) shadows_.add(at, light.direction, light.distance, reflected, path.pixel);
+void TileTracer::add_delta_lights(const PathLanes& paths, bool coherent, std::vector<vec3>& to) {
+    const Connecting c = connecting(paths, 0, false);
+    for (int number = 0; number < in_.lights.delta_count(); ++number) {
+        if (in_.lights.delta_is_directional(number)) {
+            const auto light = in_.lights.delta(number, vec3(0));
+            connect_directional(c, light.direction, light.irradiance);
+        } else {
+            for (std::uint32_t i = 0; i < paths.count; ++i) {
+                const auto light = in_.lights.delta(number, paths.position.at(i));
+                at_->lights.direction.set(i, light.direction);
+                at_->lights.radiance.set(i, light.irradiance);
+                at_->lights.distance[i] = light.distance, at_->lights.pdf[i] = 1.0f;
+            }
+            connect_given(c, at_->lights);
+        }
+        trace_shadows(coherent, to);
+    }
 }
 
 void TileTracer::add_emitters(int vertex) {
-    for (const Path& path : paths_) {
-        const float choose = pair(choices, path).x;
-        const LightDirection light = in_.lights.sample_emitter(path.at->position, choose, pair(emitter_point, path));
-        add_light_sample(path, light, continues(*path.at, vertex));
+    const PathLanes& paths = *paths_;
+    const Connecting c = connecting(paths, vertex, true);
+    if (const auto shapes = in_.lights.emitter_shapes(); !shapes.empty()) {
+        connect_shapes(c, shapes, at_->pairs[choices], at_->pairs[emitter_point]);
+    } else {
+        const PairTable &which = at_->pairs[choices], &points = at_->pairs[emitter_point];
+        for (std::uint32_t i = 0; i < paths.count; ++i) {
+            const std::uint32_t k = paths.pattern[i];
+            at_->lights.set(i, in_.lights.sample_emitter(paths.position.at(i), which.x[k], {points.x[k], points.y[k]}));
+        }
+        connect_given(c, at_->lights);
     }
-    shadows_.trace(in_.rays, false, image(vertex), counts_);
-}
-
-LightDirection TileTracer::sample_environment(const SurfacePoint& at, const vec2& u) const {
-    if (!in_.lights.environment_is_constant()) return in_.lights.sample_environment(u);
-    const vec3 local = cosine_hemisphere(u);
-    const vec3 direction = Frame(at.normal).to_world(local);
-    return {direction, infinity, in_.lights.environment(direction), local.z / pi};
-}
-
-float TileTracer::environment_pdf(const SurfacePoint& at, const vec3& direction) const {
-    if (!in_.lights.environment_is_constant()) return in_.lights.environment_pdf(direction);
-    return glm::max(0.0f, glm::dot(at.normal, direction)) / pi;
+    trace_shadows(false, image(vertex));
 }
 
 void TileTracer::add_environment(int vertex) {
-    for (const Path& path : paths_)
-        add_light_sample(path, sample_environment(*path.at, pair(environment_point, path)), continues(*path.at, vertex));
-    shadows_.trace(in_.rays, false, image(vertex), counts_);
+    const PathLanes& paths = *paths_;
+    const Connecting c = connecting(paths, vertex, true);
+    const PairTable& points = at_->pairs[environment_point];
+    if (in_.lights.environment_is_constant()) {
+        connect_constant_sky(c, in_.lights.environment(vec3(0, 1, 0)), points);
+    } else {
+        for (std::uint32_t i = 0; i < paths.count; ++i) {
+            const std::uint32_t k = paths.pattern[i];
+            at_->lights.set(i, in_.lights.sample_environment({points.x[k], points.y[k]}));
+        }
+        connect_given(c, at_->lights);
+    }
+    trace_shadows(false, image(vertex));
 }
 
-/// The next rays, in the order of the paths.
-void TileTracer::choose_steps(int vertex) {
-    steps_.clear(), rays_.clear();
-    for (std::uint32_t i = 0; i < paths_.size(); ++i) {
-        const Path& path = paths_[i];
-        const SurfacePoint& at = *path.at;
-        if (!continues(at, vertex)) continue;
-        const BrdfSample next = sample_brdf(at, -path.direction, pair(choices, path).y, pair(reflection, path));
-        vec3 throughput = path.throughput * next.weight;
-        if (max_component(throughput) <= 0.0f) continue;
-        if (in_.last_vertex == Integrand::every_vertex && vertex >= first_roulette) {
-            const float survival = glm::min(most_survival, max_component(throughput));
-            if (pair(roulette, path).x >= survival) continue;
-            throughput /= survival;
-        }
-        steps_.push_back({throughput, next.pdf, i});
-        rays_.push_back({at.position + at.geometric_normal * at.offset, 0.0f, next.wi});
-    }
+float TileTracer::environment_pdf(const vec3& normal, const vec3& direction) const {
+    if (!in_.lights.environment_is_constant()) return in_.lights.environment_pdf(direction);
+    return glm::max(0.0f, glm::dot(normal, direction)) / pi;
 }
 
 /// Light that a step's ray met, weighed against the light samples of the vertex it left.
-vec3 TileTracer::emission_met(const Step& step, const Hit& hit, const SurfacePoint* seen) const {
-    const SurfacePoint& left = *paths_[step.path].at;
-    const vec3 direction = rays_[&step - steps_.data()].direction;
-    if (seen == nullptr)
-        return step.throughput * in_.lights.environment(direction) * power_heuristic(step.pdf, environment_pdf(left, direction));
-    return step.throughput * seen->emission * power_heuristic(step.pdf, in_.lights.emitter_pdf(hit, left.position, direction));
+vec3 TileTracer::emission_met(std::uint32_t step, const Hit& hit, const SurfacePoint* seen) const {
+    const StepLanes& steps = at_->steps;
+    const std::uint32_t left = steps.path[step];
+    const vec3 direction = steps.direction.at(step), throughput = steps.throughput.at(step);
+    if (seen == nullptr) {
+        const float other = environment_pdf(paths_->normal.at(left), direction);
+        return throughput * in_.lights.environment(direction) * power_heuristic(steps.pdf[step], other);
+    }
+    const float other = in_.lights.emitter_pdf(hit, paths_->position.at(left), direction);
+    return throughput * seen->emission * power_heuristic(steps.pdf[step], other);
 }
 
+/// Paths go on to their next vertex.
 void TileTracer::take_steps(int vertex) {
-    hits_.resize(rays_.size());
-    in_.rays.nearest_coherent(rays_, hits_);
-    counts_.rays += rays_.size();
-    next_paths_.clear();
-    auto& surfaces = surfaces_[vertex & 1];
-    const SurfacePrefetch prefetch(in_.scene, hits_);
-    for (std::size_t i = 0; i < steps_.size(); ++i) {
-        prefetch.at(i);
-        const Path& path = paths_[steps_[i].path];
-        if (!hits_[i].valid()) {
-            if (in_.lights.has_environment()) image(vertex)[path.pixel] += emission_met(steps_[i], hits_[i], nullptr);
-            continue;
+    at_->steps.count = 0;
+    choose_rays({*paths_, in_.scene.materials, continue_all(vertex), roulette_at(vertex), at_->pairs[reflection],
+                 at_->pairs[choices], at_->pairs[roulette]},
+                at_->steps);
+    struct Meeting {
+        const TileTracer& tracer;
+        std::vector<vec3>& to;
+        void missed(std::uint32_t i) const {
+            if (tracer.in_.lights.has_environment()) to[tracer.at_->steps.pixel[i]] += tracer.emission_met(i, Hit{}, nullptr);
         }
-        SurfacePoint& seen = surfaces[next_paths_.size()];
-        seen = surface_at(in_.scene, hits_[i], rays_[i].direction);
-        if (max_component(seen.emission) > 0.0f) image(vertex)[path.pixel] += emission_met(steps_[i], hits_[i], &seen);
-        if (vertex < in_.last_vertex && reflects(seen))
-            next_paths_.push_back({rays_[i].direction, steps_[i].throughput, path.pixel, path.pattern, &seen});
-    }
-    paths_.swap(next_paths_);
+        SurfacePoint surface(std::uint32_t i, const Hit& hit) const {
+            const SurfacePoint seen = surface_at(tracer.in_.scene, hit, tracer.at_->steps.direction.at(i));
+            if (max_component(seen.emission) > 0.0f) to[tracer.at_->steps.pixel[i]] += tracer.emission_met(i, hit, &seen);
+            return seen;
+        }
+    };
+    next_->clear();
+    trace_steps(at_->steps, false, Meeting{*this, image(vertex)}, vertex < in_.last_vertex ? next_ : nullptr);
+    std::swap(paths_, next_);
 }
 
 }  // namespace interreflect

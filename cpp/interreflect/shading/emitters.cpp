@@ -1,22 +1,20 @@
 #include "shading/emitters.h"
 
 #include <algorithm>
+#include <array>
+#include <optional>
 #include <tuple>
 
 #include "math/sampling.h"
 #include "shading/lights.h"
-#include "shading/spherical_triangle.h"
 #include "shading/table.h"
 #include "visibility/surface.h"
 
 namespace interreflect {
 namespace {
 
-// Up to so many triangles are weighed anew from every point: their solid angles cost less than the shadow ray they save.
-constexpr std::size_t most_weighed = 16;
-// From further away than so many times its radius a triangle is weighed and sampled by area: the light varies little over it, and
-// spherical angles cost more than that and lose their digits.
-constexpr float far_radii = 2.0f;
+// From further away than so many times its radius a shape is weighed and sampled by area.
+constexpr float far_radii = 8.0f;
 constexpr int most_cuts = 64;
 
 /// The corner of a piece and its shape, in units of 1 / cuts of barycentric coordinates.
@@ -58,6 +56,41 @@ int cuts_for(const Texture& map, const GeometryArrays& arrays, const uvec3& t) {
     return std::clamp(static_cast<int>(texels / 2.0f), 1, most_cuts);
 }
 
+using ThreeCorners = std::array<vec3, 3>;
+
+EmitterShape triangle_of(const ThreeCorners& at, const vec3& normal) {
+    EmitterShape shape{at[0], at[1] - at[0], at[2] - at[0], normal, {}};
+    shape.to_middle = (shape.edge1 + shape.edge2) / 3.0f;
+    shape.area = 0.5f * glm::length(glm::cross(shape.edge1, shape.edge2));
+    float radius2 = 0;
+    for (const vec3& corner : at) {
+        const vec3 spoke = corner - at[0] - shape.to_middle;
+        radius2 = glm::max(radius2, glm::dot(spoke, spoke));
+    }
+    shape.near2 = far_radii * far_radii * radius2;
+    return shape;
+}
+
+/// The rectangle of two triangles in one plane that share their longest edge, if that is what they are up to rounding.
+std::optional<EmitterShape> rectangle_of(const ThreeCorners& p, const ThreeCorners& q, const vec3& normal, const vec3& other) {
+    if (!(glm::dot(normal, other) > 0.99999f)) return std::nullopt;
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) {
+            const vec3 corner = p[i], e1 = p[(i + 1) % 3] - corner, e2 = p[(i + 2) % 3] - corner;
+            const float rounding = 1e-5f * (glm::length(e1) + glm::length(e2));
+            if (std::fabs(glm::dot(e1, e2)) > 1e-5f * glm::length(e1) * glm::length(e2)) continue;
+            const auto meet = [&](const vec3& a, const vec3& b) { return glm::length(a - b) <= rounding; };
+            const vec3 q1 = q[(j + 1) % 3] - corner, q2 = q[(j + 2) % 3] - corner;
+            if (!meet(q[j] - corner, e1 + e2) || !((meet(q1, e1) && meet(q2, e2)) || (meet(q1, e2) && meet(q2, e1)))) continue;
+            EmitterShape shape{corner, e1, e2, normal, 0.5f * (e1 + e2)};
+            shape.area = glm::length(e1) * glm::length(e2);
+            shape.near2 = far_radii * far_radii * glm::dot(shape.to_middle, shape.to_middle);
+            shape.rectangle = true;
+            return shape;
+        }
+    return std::nullopt;
+}
+
 }  // namespace
 
 EmitterSampler::EmitterSampler(const Scene& scene) : scene_(&scene) {
@@ -67,6 +100,7 @@ EmitterSampler::EmitterSampler(const Scene& scene) : scene_(&scene) {
     const bool light = make_cdf(cdf_) > 0;
     few_ = !few_ && triangles_.size() <= most_weighed;
     if (!light) triangles_.clear();
+    if (few_) make_shapes();
 }
 
 EmitterSampler::Triangle EmitterSampler::make_triangle(const Emitter& emitter) const {
@@ -115,67 +149,31 @@ vec3 EmitterSampler::radiance(const Triangle& t, const vec2& barycentric) const 
     return t.map < 0 ? t.emission : t.emission * scene_->textures[t.map]->bilinear(texcoord);
 }
 
-/// angles: 0 where the triangle is far.
-float EmitterSampler::weigh_few(const vec3& position, float* weights, float* angles) const {
-    float sum = 0;
+/// Two triangles that make a rectangle are one shape.
+void EmitterSampler::make_shapes() {
+    const auto corners_of = [](const Triangle& t) { return ThreeCorners{t.corner, t.corner + t.edge1, t.corner + t.edge2}; };
+    std::vector<bool> done(triangles_.size(), false);
     for (std::size_t i = 0; i < triangles_.size(); ++i) {
-        const Triangle& t = triangles_[i];
-        const vec3 a = t.corner - position;
-        weights[i] = angles[i] = 0.0f;
-        const float height = -glm::dot(a, t.normal);
-        if (height <= 0.0f) continue;
-        const vec3 from_corner = (t.edge1 + t.edge2) / 3.0f, centre = a + from_corner;
-        const vec3 second = t.edge1 - from_corner, third = t.edge2 - from_corner;
-        const float radius2 =
-            glm::max(glm::dot(from_corner, from_corner), glm::max(glm::dot(second, second), glm::dot(third, third)));
-        const float distance2 = glm::dot(centre, centre);
-        float angle = t.area * height / (distance2 * std::sqrt(distance2));
-        if (distance2 < far_radii * far_radii * radius2)
-            angle = angles[i] = solid_angle(glm::normalize(a), glm::normalize(a + t.edge1), glm::normalize(a + t.edge2));
-        weights[i] = angle * luminance(t.emission);
-        sum += weights[i];
+        if (done[i]) continue;
+        const auto number = static_cast<int>(shapes_.size());
+        triangles_[i].shape = number;
+        std::optional<EmitterShape> shape;
+        for (std::size_t j = i + 1; j < triangles_.size() && !shape; ++j) {
+            if (done[j] || triangles_[j].emission != triangles_[i].emission) continue;
+            shape =
+                rectangle_of(corners_of(triangles_[i]), corners_of(triangles_[j]), triangles_[i].normal, triangles_[j].normal);
+            if (shape) triangles_[j].shape = number, done[j] = true;
+        }
+        if (!shape) shape = triangle_of(corners_of(triangles_[i]), triangles_[i].normal);
+        shape->emission = triangles_[i].emission;
+        shape->luminance = luminance(shape->emission);
+        shapes_.push_back(*shape);
     }
-    return sum;
 }
 
 LightDirection EmitterSampler::sample(const vec3& position, float choose, const vec2& u) const {
     if (triangles_.empty()) return {};
-    return few_ ? sample_few(position, choose, u) : sample_many(position, choose, u);
-}
-
-LightDirection EmitterSampler::sample_few(const vec3& position, float choose, const vec2& u) const {
-    float weights[most_weighed], angles[most_weighed];
-    const float sum = weigh_few(position, weights, angles);
-    if (!(sum > 0.0f)) return {};
-    float left = choose * sum;
-    std::size_t i = 0, last = 0;
-    for (; i < triangles_.size(); ++i) {
-        if (weights[i] <= 0.0f) continue;
-        last = i;
-        if (left < weights[i]) break;
-        left -= weights[i];
-    }
-    i = last;
-    const Triangle& t = triangles_[i];
-    const vec3 a = t.corner - position;
-    LightDirection light;
-    light.radiance = t.emission;
-    if (angles[i] <= 0.0f) {
-        const vec2 b = uniform_triangle(u);
-        const vec3 to = a + t.edge1 * b.x + t.edge2 * b.y;
-        light.distance = glm::length(to);
-        light.direction = to / light.distance;
-        light.pdf = light.distance * light.distance / (t.area * -glm::dot(light.direction, t.normal));
-    } else {
-        light.direction =
-            sample_spherical_triangle(glm::normalize(a), glm::normalize(a + t.edge1), glm::normalize(a + t.edge2), u);
-        light.distance = glm::dot(a, t.normal) / glm::dot(light.direction, t.normal);
-        light.pdf = 1.0f / angles[i];
-    }
-    light.pdf *= weights[i] / sum;
-    // Rounding can turn a direction at the rim of a triangle seen edge-on past its plane.
-    if (!(light.distance > 0.0f) || !std::isfinite(light.distance) || !std::isfinite(light.pdf)) return {};
-    return light;
+    return few_ ? sample_shapes(shapes_, position, choose, u) : sample_many(position, choose, u);
 }
 
 LightDirection EmitterSampler::sample_many(const vec3& position, float choose, const vec2& u) const {
@@ -206,21 +204,13 @@ const EmitterSampler::Triangle* EmitterSampler::find(const Hit& hit) const {
 float EmitterSampler::pdf(const Hit& hit, const vec3& position, const vec3& direction) const {
     const Triangle* t = find(hit);
     if (t == nullptr) return 0.0f;
+    if (few_) return shapes_pdf(shapes_, position, direction, t->shape);
     const float cosine = -glm::dot(direction, t->normal);
     if (!(cosine > 0.0f)) return 0.0f;
-    const auto by_area = [&] {
-        const float distance = glm::dot(t->corner - position, t->normal) / -cosine;
-        return distance * distance / (t->area * cosine);
-    };
-    if (few_) {
-        float weights[most_weighed], angles[most_weighed];
-        const float sum = weigh_few(position, weights, angles);
-        const auto i = t - triangles_.data();
-        if (!(weights[i] > 0.0f)) return 0.0f;
-        return weights[i] / sum * (angles[i] <= 0.0f ? by_area() : 1.0f / angles[i]);
-    }
+    const float distance = glm::dot(t->corner - position, t->normal) / -cosine;
+    const float by_area = distance * distance / (t->area * cosine);
     const std::uint32_t piece = t->first_piece + piece_of({hit.u, hit.v}, t->cuts);
-    return (cdf_[piece + 1] - cdf_[piece]) * static_cast<float>(t->cuts) * static_cast<float>(t->cuts) * by_area();
+    return (cdf_[piece + 1] - cdf_[piece]) * static_cast<float>(t->cuts) * static_cast<float>(t->cuts) * by_area;
 }
 
 }  // namespace interreflect

@@ -1,9 +1,11 @@
 /// Emitting triangles as lights.
 #pragma once
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "data/scene.h"
+#include "shading/emitter_shape.h"
 #include "visibility/intersector.h"
 
 namespace interreflect {
@@ -19,6 +21,8 @@ class EmitterSampler {
     bool many() const { return !triangles_.empty() && !few_; }
     LightDirection sample(const vec3& position, float choose, const vec2& u) const;
     float pdf(const Hit& hit, const vec3& position, const vec3& direction) const;
+    /// For those who sample from many points at once; empty where emitters are many.
+    std::span<const EmitterShape> shapes() const { return shapes_; }
 
   private:
     struct Triangle {
@@ -28,19 +32,19 @@ class EmitterSampler {
         int map = -1, mask = -1, material = 0;
         std::uint32_t instance = 0, triangle = 0;
         std::uint32_t first_piece = 0;
-        int cuts = 1;  // pieces along an edge
+        int cuts = 1;   // pieces along an edge
+        int shape = 0;  // of shapes_, where the emitters are few
     };
     Triangle make_triangle(const Emitter& emitter) const;
     void append_weights(const Triangle& t);
     vec3 radiance(const Triangle& t, const vec2& barycentric) const;
-    /// Luminance times solid angle of every triangle as seen from a point; their sum.
-    float weigh_few(const vec3& position, float* weights, float* angles) const;
-    LightDirection sample_few(const vec3& position, float choose, const vec2& u) const;
+    void make_shapes();
     LightDirection sample_many(const vec3& position, float choose, const vec2& u) const;
     const Triangle* find(const Hit& hit) const;
 
     const Scene* scene_;
     std::vector<Triangle> triangles_;      // ascending by instance, then triangle
+    std::vector<EmitterShape> shapes_;     // empty unless the emitters are few
     std::vector<std::uint32_t> of_piece_;  // piece -> triangle
     std::vector<float> cdf_;               // over all pieces, by luminance times area
     bool few_ = false;

@@ -34,6 +34,8 @@ class LightSampler {
     /// Point, spot and directional lights, in that order.
     int delta_count() const { return points_ + spots_ + directions_; }
     Delta delta(int i, const vec3& position) const;
+    /// Light that is the same at every position.
+    bool delta_is_directional(int i) const { return i >= points_ + spots_; }
 
     bool has_emitters() const { return !emitters_.empty(); }
     /// Few emitters: in proportion to luminance times solid angle, and uniform in the solid angle of the chosen one. Many: in
@@ -45,6 +47,8 @@ class LightSampler {
     float emitter_pdf(const Hit& hit, const vec3& position, const vec3& direction) const {
         return emitters_.pdf(hit, position, direction);
     }
+
+    std::span<const EmitterShape> emitter_shapes() const { return emitters_.shapes(); }
 
     bool has_environment() const { return environment_.present(); }
     /// The same radiance from everywhere: a sampler that knows the receiver's normal does better than sample_environment.

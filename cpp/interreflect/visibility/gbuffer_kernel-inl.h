@@ -6,8 +6,7 @@
 #define INTERREFLECT_GBUFFER_KERNEL
 #endif
 
-#include <hwy/cache_control.h>
-
+#include "visibility/interpolate_kernel-inl.h"
 #include "visibility/texture_kernel-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -15,43 +14,15 @@ namespace interreflect {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-inline constexpr int packet = RayPacket::width;
-using Tag = hn::CappedTag<float, packet>;
-using Vector = hn::Vec<Tag>;
-using FloatLanes = float[packet];
-// Four values a lane, side by side, as they come from the vertices.
-using Quads = float[packet][4];
-
 /// One packet on its way from rays to pixels; every array is sixteen lanes.
-struct Shaded {
+struct Shaded : Interpolated {
     alignas(64) FloatLanes direction_length;  // of the unnormalised ray
-    // Interpolated: position and normal x; normal y, z and texture coordinates. Differences of the second and third corner to the
-    // first in the same order. Largest magnitudes of the corners' coordinates.
-    alignas(64) Quads position_normal, normal_texcoord, edge1, edge1_texcoord, edge2, edge2_texcoord, largest;
     alignas(64) FloatLanes u, v, area, reflects;
     alignas(64) FloatLanes albedo[3], specular[3], alpha;
     alignas(64) float position[3 * packet], geometric[3 * packet], normal[3 * packet], albedo_out[3 * packet],
         specular_out[3 * packet];
     alignas(64) FloatLanes offset;
-    std::uint32_t material[packet];
 };
-
-struct Vec3 {
-    Vector x, y, z;
-};
-HWY_INLINE Vector dot(const Vec3& a, const Vec3& b) { return hn::MulAdd(a.x, b.x, hn::MulAdd(a.y, b.y, hn::Mul(a.z, b.z))); }
-HWY_INLINE Vec3 cross(const Vec3& a, const Vec3& b) {
-    return {hn::NegMulAdd(a.z, b.y, hn::Mul(a.y, b.z)), hn::NegMulAdd(a.x, b.z, hn::Mul(a.z, b.x)),
-            hn::NegMulAdd(a.y, b.x, hn::Mul(a.x, b.y))};
-}
-HWY_INLINE Vec3 scaled(const Vec3& a, Vector s) { return {hn::Mul(a.x, s), hn::Mul(a.y, s), hn::Mul(a.z, s)}; }
-/// a where the mask holds, b elsewhere.
-template <class M>
-HWY_INLINE Vec3 choose(M mask, const Vec3& a, const Vec3& b) {
-    return {hn::IfThenElse(mask, a.x, b.x), hn::IfThenElse(mask, a.y, b.y), hn::IfThenElse(mask, a.z, b.z)};
-}
-HWY_INLINE Vec3 negated(const Vec3& a) { return {hn::Neg(a.x), hn::Neg(a.y), hn::Neg(a.z)}; }
-HWY_INLINE void store3(const Vec3& a, float* to) { hn::StoreInterleaved3(a.x, a.y, a.z, Tag(), to); }
 
 /// Primary rays through the centres of the 4 x 4 pixels from (x0, y0) on.
 HWY_INLINE void fill_rays(const CameraRays& rays, int x0, int y0, RayPacket& packet_rays, Shaded& s) {
@@ -84,34 +55,6 @@ HWY_INLINE void fill_rays(const CameraRays& rays, int x0, int y0, RayPacket& pac
     }
 }
 
-/// Everything that is interpolated, lane by lane, eight numbers of a vertex at a time.
-HWY_INLINE void interpolate(const GeometryArrays& arrays, const RayPacket& hits, std::uint32_t plain, Shaded& s) {
-    const hn::CappedTag<float, 4> d;
-    const std::uint32_t* triangles = reinterpret_cast<const std::uint32_t*>(arrays.triangles.data());
-    const float* vertices = reinterpret_cast<const float*>(arrays.vertices.data());
-    // Lanes that are left out borrow the triangle of one that is not.
-    const std::uint32_t stand_in = hits.triangle[hwy::Num0BitsBelowLS1Bit_Nonzero32(plain)];
-    for (int k = 0; k < packet; ++k) {
-        const bool taken = ((plain >> k) & 1U) != 0;
-        const std::size_t triangle = taken ? hits.triangle[k] : stand_in;
-        const auto u = hn::Set(d, taken ? hits.u[k] : 0.0f), v = hn::Set(d, taken ? hits.v[k] : 0.0f);
-        const auto w = hn::Sub(hn::Sub(hn::Set(d, 1.0f), u), v);
-        const std::uint32_t* corners = triangles + 3 * triangle;
-        const float *a = vertices + 8 * std::size_t{corners[0]}, *b = vertices + 8 * std::size_t{corners[1]},
-                    *c = vertices + 8 * std::size_t{corners[2]};
-        const auto a0 = hn::Load(d, a), b0 = hn::Load(d, b), c0 = hn::Load(d, c);
-        const auto a1 = hn::Load(d, a + 4), b1 = hn::Load(d, b + 4), c1 = hn::Load(d, c + 4);
-        hn::Store(hn::Add(hn::Add(hn::Mul(a0, w), hn::Mul(b0, u)), hn::Mul(c0, v)), d, s.position_normal[k]);
-        hn::Store(hn::Add(hn::Add(hn::Mul(a1, w), hn::Mul(b1, u)), hn::Mul(c1, v)), d, s.normal_texcoord[k]);
-        hn::Store(hn::Sub(b0, a0), d, s.edge1[k]);
-        hn::Store(hn::Sub(b1, a1), d, s.edge1_texcoord[k]);
-        hn::Store(hn::Sub(c0, a0), d, s.edge2[k]);
-        hn::Store(hn::Sub(c1, a1), d, s.edge2_texcoord[k]);
-        hn::Store(hn::Max(hn::Abs(a0), hn::Max(hn::Abs(b0), hn::Abs(c0))), d, s.largest[k]);
-        s.material[k] = arrays.materials[triangle];
-    }
-}
-
 /// Reflectances before textures, and whether the side that is seen reflects at all.
 HWY_INLINE void look_up_materials(const GBufferJob& job, Shaded& s) {
     for (int k = 0; k < packet; ++k) {
@@ -141,25 +84,10 @@ HWY_INLINE void shade_geometry(const RayPacket& hits, float pixel_area, Shaded& 
         const Vec3 plane = cross(e1, e2);
         const Vector facing = dot(plane, direction);
         const auto front = hn::Lt(facing, zero);
-        const Vec3 unit = scaled(plane, hn::Div(one, hn::Sqrt(dot(plane, plane))));
-        const Vec3 geometric = choose(front, unit, negated(unit));
+        const Vec3 upward = scaled(plane, hn::Div(one, hn::Sqrt(dot(plane, plane))));
+        const Vec3 geometric = choose(front, upward, negated(upward));
 
-        // visible_normal of surface.h
-        const Vector squared = dot(shading, shading);
-        const auto smooth = hn::Gt(squared, zero);
-        const Vector scale = hn::Div(one, hn::Sqrt(hn::IfThenElse(smooth, squared, one)));
-        Vec3 normal = choose(smooth, scaled(shading, scale), geometric);
-        normal = choose(hn::Lt(dot(normal, geometric), zero), negated(normal), normal);
-        const Vector cosine = hn::Neg(dot(normal, direction));
-        const auto hidden = hn::Le(cosine, zero);
-        if (!hn::AllFalse(d, hidden)) {
-            const Vector least = hn::Max(hn::Neg(dot(geometric, direction)), hn::Set(d, 1e-6f));
-            const Vector share = hn::Sub(hn::Mul(hn::Set(d, 0x1p-6f), least), cosine);
-            const Vec3 bent{hn::MulAdd(normal.x, least, hn::Mul(geometric.x, share)),
-                            hn::MulAdd(normal.y, least, hn::Mul(geometric.y, share)),
-                            hn::MulAdd(normal.z, least, hn::Mul(geometric.z, share))};
-            normal = choose(hidden, scaled(bent, hn::Div(one, hn::Sqrt(dot(bent, bent)))), normal);
-        }
+        const Vec3 normal = visible_normal_lanes(shading, geometric, direction);
 
         // Area of the pixel's footprint on the plane is pixel_area depth^2 / (length^3 cosine); the triangle's areas in texture
         // coordinates and in space turn it into texture coordinates.
@@ -247,17 +175,6 @@ HWY_INLINE void store_packet(const GBufferJob& job, const Tile& tile, int x0, in
     }
 }
 
-/// Lanes that the vectors may shade: a hit on what stands in world space, with a plain material.
-HWY_INLINE std::uint32_t plain_lanes(const GBufferJob& job, const RayPacket& hits, std::uint32_t active) {
-    const Geometry& geometry = *job.scene.geometry;
-    std::uint32_t plain = 0;
-    for (int k = 0; k < packet; ++k) {
-        if (((active >> k) & 1U) == 0 || !hits.met(k) || !geometry.instances[hits.instance[k]].identity) continue;
-        plain |= static_cast<std::uint32_t>(job.materials[geometry.arrays->materials[hits.triangle[k]]].plain) << k;
-    }
-    return plain;
-}
-
 /// A packet between two steps. Several are on their way at once: each step asks the memory for what the next one reads.
 struct Slot {
     RayPacket rays;
@@ -270,23 +187,12 @@ HWY_INLINE void trace_rays(const GBufferJob& job, const Tile& tile, int x0, int 
     slot.active = 0;
     for (int k = 0; k < packet; ++k) slot.active |= static_cast<std::uint32_t>(x0 + k % 4 < tile.x1 && y0 + k / 4 < tile.y1) << k;
     job.intersector.nearest(slot.rays, slot.active);
-    const GeometryArrays& arrays = *job.scene.geometry->arrays;
-    for (int k = 0; k < packet; ++k) {
-        if (!slot.rays.met(k)) continue;
-        hwy::Prefetch(arrays.triangles.data() + slot.rays.triangle[k]);
-        hwy::Prefetch(arrays.materials.data() + slot.rays.triangle[k]);
-    }
+    prefetch_triangles(*job.scene.geometry->arrays, slot.rays);
 }
 
 HWY_INLINE void ask_for_vertices(const GBufferJob& job, Slot& slot) {
-    const GeometryArrays& arrays = *job.scene.geometry->arrays;
-    const auto* triangles = reinterpret_cast<const std::uint32_t*>(arrays.triangles.data());
-    slot.plain = plain_lanes(job, slot.rays, slot.active);
-    for (int k = 0; k < packet; ++k) {
-        if (((slot.plain >> k) & 1U) == 0) continue;
-        const std::uint32_t* corners = triangles + 3 * std::size_t{slot.rays.triangle[k]};
-        for (int c = 0; c < 3; ++c) hwy::Prefetch(arrays.vertices.data() + corners[c]);
-    }
+    slot.plain = plain_lanes(*job.scene.geometry, job.materials.data(), slot.rays, slot.active);
+    prefetch_vertices(*job.scene.geometry->arrays, slot.rays, slot.plain);
 }
 
 /// The texels that the finer of the two levels needs; the coarser one's are four times fewer and mostly there already.

@@ -6,18 +6,9 @@
 #include "data/scene.h"
 #include "math/parallel.h"
 #include "visibility/intersector.h"
+#include "visibility/kernel_material.h"
 
 namespace interreflect {
-
-/// A material as the kernel reads it.
-struct KernelMaterial {
-    float albedo[3], specular[3], alpha;
-    bool two_sided = true;
-    bool plain = true;                      // false: emits, or has a float texture; its pixels are shaded one by one
-    const std::uint32_t* texels = nullptr;  // sRGB texture of the albedo, or null
-    const Texture::Level* levels = nullptr;
-    int level_count = 0;
-};
 
 /// Everything that all tiles of one picture share.
 struct GBufferJob {

@@ -61,26 +61,6 @@ void store_hit(GBuffer& g, std::size_t pixel, const Scene& scene, const Hit& hit
     g.body[pixel] = scene.geometry->instances[hit.instance].body;
 }
 
-std::vector<KernelMaterial> kernel_materials(const Scene& scene) {
-    std::vector<KernelMaterial> table;
-    for (const Material& material : scene.materials) {
-        KernelMaterial entry;
-        for (int c = 0; c < 3; ++c) entry.albedo[c] = material.albedo[c], entry.specular[c] = material.specular[c];
-        entry.alpha = material.alpha;
-        entry.two_sided = material.two_sided;
-        entry.plain = !material.emits();
-        if (material.albedo_map >= 0) {
-            const Texture& texture = *scene.textures[material.albedo_map];
-            if (texture.srgb_texels().empty()) entry.plain = false;
-            entry.texels = texture.srgb_texels().data();
-            entry.levels = texture.level_table().data();
-            entry.level_count = texture.levels();
-        }
-        table.push_back(entry);
-    }
-    return table;
-}
-
 }  // namespace
 
 void check_view(const Camera& camera, int width, int height) {
