@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 # Libraries whose version can change a picture or a metric.
-LIBRARIES = ("numpy", "OpenImageIO", "trimesh", "pygltflib", "flip-evaluator", "scikit-image", "moocore", "pyoidn")
+LIBRARIES = ("numpy", "OpenImageIO", "flip-evaluator", "scikit-image", "moocore", "pyoidn")
 UNKNOWN = "unknown"
 
 

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import trimesh
 from scene_files import TRIANGLE, write, write_image
 
 from interreflect.errors import SceneError
@@ -180,7 +181,6 @@ def test_thousands_of_materials_and_repeated_libraries_load_in_bounded_time(tmp_
 
 
 def test_trimesh_reads_the_same_triangles_from_a_clean_file(tmp_path: Path) -> None:
-    trimesh = pytest.importorskip("trimesh")
     rng = np.random.default_rng(5)
     points, faces = rng.random((500, 3)), rng.integers(1, 501, (900, 3))
     text = "".join(f"v {x:.6f} {y:.6f} {z:.6f}\n" for x, y, z in points) + "".join(f"f {a} {b} {c}\n" for a, b, c in faces)

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import trimesh
 
 from interreflect.errors import SceneError
 from interreflect.scenes.load import read_scene
@@ -116,7 +117,6 @@ def test_what_is_malformed_is_refused(tmp_path: Path, data: bytes, message: str)
 
 
 def test_trimesh_reads_the_same_triangles(tmp_path: Path) -> None:
-    trimesh = pytest.importorskip("trimesh")
     rng = np.random.default_rng(2)
     points = [tuple(p) for p in rng.random((300, 3)).astype(np.float32).tolist()]
     faces = [tuple(rng.permutation(300)[:3].tolist()) for _ in range(500)]

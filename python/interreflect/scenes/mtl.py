@@ -1,4 +1,8 @@
-"""Materials of an .obj: the statements that SCENE_FORMAT.md names; the rest is ignored."""
+"""Materials of an .obj: the statements that SCENE_FORMAT.md names; the rest is ignored.
+
+trimesh (5.2, measured) keeps 8 bits of a colour, reads a trailing comment as part of one, leaves Ke and map_d as text, and drops texture
+paths and names it does not know without a word.
+"""
 
 from __future__ import annotations
 
