@@ -27,6 +27,7 @@ _HOMES = {
     "load_records": "study.store",
     **dict.fromkeys(("Reference", "reference"), "study.reference"),
     **dict.fromkeys(("pareto", "cheapest", "best", "equal_time", "equal_error"), "study.pareto"),
+    "attribute": "study.attribution",
     "report": "study.report",
     "about": "machine",  # not a module of that name: importing it would put the module in the function's place
 }
@@ -91,6 +92,7 @@ if TYPE_CHECKING:
     from interreflect.stages import techniques as techniques
     from interreflect.stages import trace_gbuffer as trace_gbuffer
     from interreflect.stages import voxelize as voxelize
+    from interreflect.study.attribution import attribute as attribute
     from interreflect.study.pareto import best as best
     from interreflect.study.pareto import cheapest as cheapest
     from interreflect.study.pareto import equal_error as equal_error

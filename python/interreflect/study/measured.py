@@ -1,0 +1,35 @@
+"""How the tools that measure on their own do it: a study in a folder below the user's cache, so that they resume."""
+
+from __future__ import annotations
+
+import hashlib
+import re
+from pathlib import Path
+from typing import Any
+
+import interreflect.cache as cache
+from interreflect.study.interface import Method, Scene
+from interreflect.study.records import Record
+from interreflect.study.run import run
+from interreflect.study.study import Study
+
+
+def study_folder(tool: str, scene: Scene, *identity: Any) -> Path:
+    """A folder of one tool's work on one scene, named after it and after what else tells it apart."""
+    told_apart = hashlib.blake2b(repr((scene.hash, identity)).encode(), digest_size=6).hexdigest()
+    name = re.sub(r"[^A-Za-z0-9]+", "-", scene.name).strip("-")
+    return cache.folder("studies") / f"{tool}-{name or 'scene'}-{told_apart}"
+
+
+def measured(study: Study, folder: str | Path) -> list[tuple[Record, ...]]:
+    """The records of a study of one view, method by method, each in the order of the seeds. What failed is among them."""
+    records = run(study, folder)
+    if len(records) != len(study.cells()):
+        raise ValueError(f"{folder}: {records.missing} cells are missing and {len(records.damaged)} damaged")
+    count = len(study.seeds)
+    return [tuple(records[index : index + count]) for index in range(0, len(records), count)]
+
+
+def same(method: Method) -> str:
+    """Equal for methods with equal knobs."""
+    return repr((method.name, sorted(method.knobs().items(), key=lambda knob: knob[0])))
