@@ -15,6 +15,11 @@ VARIANTS = [
     ("integrating_sphere", {}), ("integrating_sphere", {"light": "point", "radius": 3}),
     ("corner", {}), ("corner", {"light": "spot"}), ("facing_squares", {"distance": 2}), ("disk_above_point", {"offset": 1}),
     ("thin_wall", {}), ("thin_wall", {"thickness": 0.1, "rotation": 30, "offset": 0.01}),
+    ("corner", {"light": "spot", "aim": 0.1, "cap": 4, "fields": 8}), ("thin_wall", {"ball": 0.04}),
+    ("ball_on_floor", {}), ("ball_on_floor", {"radius": 0.02}), ("blade", {}), ("blade", {"height": 0.01}),
+    ("blocked_sky", {}), ("blocked_sky", {"blocker": "wall", "distance": 0.02}), ("lone_ball", {}), ("lone_ball", {"radius": 0.02}),
+    ("glossy_receiver", {}), ("glossy_receiver", {"spot": 2, "exponent": 400}), ("opposed_lights", {}), ("penumbra", {"height": 0.05}),
+    ("sunk_box", {}), ("sunk_box", {"depth": 0.1, "height": 0.05}),
     ("corridors", {}), ("corridors", {"thickness": 0.05, "length": 20}),
     ("grille", {}), ("grille", {"bars": 60, "width": 0.004}),
     ("glossy_plates", {}), ("glossy_plates", {"lobe": "phong"}),
@@ -188,5 +193,5 @@ def test_an_unknown_knob_is_a_type_error_with_the_nearest_name():
 
 
 def test_the_name_of_a_scene_tells_its_knobs():
-    assert scenes.thin_wall(0.1, offset=0.01).name == "thin_wall(thickness=0.1, rotation=0, offset=0.01)"
+    assert scenes.thin_wall(0.1, offset=0.01).name == "thin_wall(thickness=0.1, rotation=0, offset=0.01, ball=0)"
     assert scenes.cornell_box(light="spot").name == "cornell_box(light='spot', box='diffuse')"

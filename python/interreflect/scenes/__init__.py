@@ -7,21 +7,32 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from interreflect.scenes.builtin.atrium import atrium as atrium
+    from interreflect.scenes.builtin.ball_on_floor import ball_on_floor as ball_on_floor
+    from interreflect.scenes.builtin.blade import blade as blade
+    from interreflect.scenes.builtin.blocked_sky import blocked_sky as blocked_sky
     from interreflect.scenes.builtin.closed_forms import closed_form as closed_form
     from interreflect.scenes.builtin.cornell_box import cornell_box as cornell_box
     from interreflect.scenes.builtin.corridors import corridors as corridors
     from interreflect.scenes.builtin.disk_above_point import disk_above_point as disk_above_point
     from interreflect.scenes.builtin.furnace import furnace as furnace
     from interreflect.scenes.builtin.glossy_plates import glossy_plates as glossy_plates
+    from interreflect.scenes.builtin.glossy_receiver import glossy_receiver as glossy_receiver
     from interreflect.scenes.builtin.grille import grille as grille
     from interreflect.scenes.builtin.integrating_sphere import integrating_sphere as integrating_sphere
+    from interreflect.scenes.builtin.lone_ball import lone_ball as lone_ball
+    from interreflect.scenes.builtin.opposed_lights import opposed_lights as opposed_lights
+    from interreflect.scenes.builtin.penumbra import penumbra as penumbra
     from interreflect.scenes.builtin.squares import corner as corner
     from interreflect.scenes.builtin.squares import facing_squares as facing_squares
+    from interreflect.scenes.builtin.sunk_box import sunk_box as sunk_box
     from interreflect.scenes.builtin.textured_light_box import textured_light_box as textured_light_box
     from interreflect.scenes.builtin.thin_wall import thin_wall as thin_wall
 
 _MODULES = {
     "atrium": "atrium",
+    "ball_on_floor": "ball_on_floor",
+    "blade": "blade",
+    "blocked_sky": "blocked_sky",
     "closed_form": "closed_forms",
     "cornell_box": "cornell_box",
     "corner": "squares",
@@ -30,8 +41,13 @@ _MODULES = {
     "facing_squares": "squares",
     "furnace": "furnace",
     "glossy_plates": "glossy_plates",
+    "glossy_receiver": "glossy_receiver",
     "grille": "grille",
     "integrating_sphere": "integrating_sphere",
+    "lone_ball": "lone_ball",
+    "opposed_lights": "opposed_lights",
+    "penumbra": "penumbra",
+    "sunk_box": "sunk_box",
     "textured_light_box": "textured_light_box",
     "thin_wall": "thin_wall",
 }

@@ -5,11 +5,13 @@ from __future__ import annotations
 from typing import Annotated
 
 import numpy as np
+from numpy.typing import NDArray
 
 from interreflect.scenes.builtin.knobs import Knob, built_in
 from interreflect.scenes.builtin.measured import facing_camera
+from interreflect.scenes.builtin.patterns import encoded
 from interreflect.scenes.builtin.shapes import mesh, quad
-from interreflect.scenes.values import Camera, Light, Material, Mesh, Scene, SpotLight
+from interreflect.scenes.values import Camera, Light, Material, Mesh, Scene, SpotLight, Texture
 
 FLOOR = quad((-0.5, 0, 0.5), (1, 0, 0), (0, 0, -1))
 
@@ -42,10 +44,14 @@ def facing_squares(
 def corner(
     light: Annotated[str, Knob("the wall (black, of exitance 1), or a spot on a wall that reflects", choices=("wall", "spot"))] = "wall",
     albedo: Annotated[float, Knob("of what reflects", 0, 1)] = 0.5,
+    aim: Annotated[float, Knob("height at which the spot's axis meets the wall", 0, 1)] = 0.45,
+    cap: Annotated[float, Knob("half angle of the spot", 1, 40, unit="degrees")] = 14.0,
+    fields: Annotated[int, Knob("chequers along a side of the wall; 0: plain", 0, 64)] = 0,
 ) -> Scene:
     """A floor and a wall, unit squares with a shared edge: where virtual point lights are singular.
 
-    Camera "receiver" sees exactly the floor, every part of it alike; "view" sees both.
+    Camera "receiver" sees exactly the floor, every part of it alike; "view" sees both. The spot stands .1 to .6 above the floor,
+    level with its aim or above it.
     """
     wall = quad((-0.5, 0, 0.5), (0, 0, -1), (0, 1, 0))
     material = emitter_material() if light == "wall" else Material(name="wall", albedo=(albedo,) * 3)
@@ -53,13 +59,25 @@ def corner(
         "receiver": facing_camera((0, 0, 0), (0, 1, 0), half_width=0.5, distance=0.5),
         "view": Camera(position=(1.3, 0.8, 1.2), target=(-0.2, 0.35, 0), fov_x=50, size=(512, 512)),
     }
-    lights = [_spot()] if light == "spot" else []
-    return Scene(meshes=[_receiver(albedo), mesh(wall, material)], lights=lights, cameras=cameras)
+    if fields and light == "spot":
+        material = material.replace(albedo_map=Texture(encoded(_chequers(fields, albedo))), albedo=(1, 1, 1))
+    lights = [_spot(aim, cap)] if light == "spot" else []
+    corners = np.array([(0, 0), (1, 0), (1, 1), (0, 1)], float)
+    return Scene(meshes=[_receiver(albedo), mesh(wall, material, texcoords=corners)], lights=lights, cameras=cameras)
 
 
 def _receiver(albedo: float) -> Mesh:
     return mesh(FLOOR, Material(name="receiver", albedo=(albedo,) * 3))
 
 
-def _spot() -> Light:
-    return SpotLight(position=(1, 0.6, 0), direction=(-1, -0.1, 0), intensity=(4, 4, 4), inner=12, outer=14)
+def _spot(aim: float, cap: float) -> Light:
+    place = (1.0, max(0.1, min(aim + 0.15, 0.6)), 0.0)
+    direction = (-1.5, aim - place[1], 0.0)
+    return SpotLight(position=place, direction=direction, intensity=(4, 4, 4), inner=cap * 6 / 7, outer=cap)
+
+
+def _chequers(fields: int, albedo: float) -> NDArray[np.float64]:
+    """(256, 256, 3) reflectance: white fields of `albedo`, black ones of a tenth of it."""
+    place = np.arange(256) * fields // 256
+    white = (place[:, None] + place) % 2 == 0
+    return np.repeat(np.where(white, albedo, albedo / 10)[..., None], 3, axis=2)

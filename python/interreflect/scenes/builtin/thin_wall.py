@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Annotated
 
 from interreflect.scenes.builtin.knobs import Knob, built_in
-from interreflect.scenes.builtin.shapes import Shape, box, flipped, join, mesh, moved, rotation_about_y
+from interreflect.scenes.builtin.shapes import Shape, box, flipped, join, mesh, moved, rotation_about_y, sphere
 from interreflect.scenes.values import Camera, Material, PointLight, Scene
 
 HULL = 0.4, 0.2, 0.36  # half length, half width and height of both rooms together
@@ -17,6 +17,7 @@ def thin_wall(
     thickness: Annotated[float, Knob("of the wall between the rooms", 0, 0.2, open_minimum=True, unit="extents")] = 0.02,
     rotation: Annotated[float, Knob("of both rooms about the vertical", -180, 180, unit="degrees")] = 0.0,
     offset: Annotated[float, Knob("of the wall towards the dark room", -0.1, 0.1, unit="extents")] = 0.0,
+    ball: Annotated[float, Knob("radius of a ball, its own body, hung in the dark room; 0: none", 0, 0.08, unit="extents")] = 0.0,
 ) -> Scene:
     """Two closed rooms with one wall between them, a point light in one. The truth of the dark room is 0.
 
@@ -29,7 +30,11 @@ def thin_wall(
     stone = Material(name="stone", albedo=(0.7, 0.7, 0.7))
     lamp = PointLight(position=_turned((-0.24, 0.27, 0.02), angle), intensity=(0.1, 0.09, 0.08))
     cameras = {name: _camera(side, angle) for name, side in (("lit", -1), ("dark", 1))}
-    return Scene(meshes=[mesh(rooms, stone), mesh(plate, stone)], lights=[lamp], cameras=cameras)
+    meshes = [mesh(rooms, stone), mesh(plate, stone)]
+    if ball:
+        place = _turned((offset + thickness / 2 + 0.1, 0.16, 0), angle)
+        meshes.append(mesh(sphere(ball, centre=place, segments=24), Material(name="ball", albedo=(0.7, 0.7, 0.7)), body="ball"))
+    return Scene(meshes=meshes, lights=[lamp], cameras=cameras)
 
 
 def _rooms(wall_begin: float, wall_end: float) -> Shape:
