@@ -154,7 +154,8 @@ HWY_INLINE void store_row(const void* from, int lane, int count, void* to, std::
 
 HWY_INLINE void store_packet(const GBufferJob& job, const Tile& tile, int x0, int y0, const RayPacket& hits, const Shaded& s) {
     static const float zeros[3 * packet] = {};
-    static const std::uint32_t body[packet] = {};
+    std::uint32_t body[packet];
+    for (int k = 0; k < packet; ++k) body[k] = hits.met(k) ? job.scene.geometry->instances[hits.instance[k]].body : 0;
     GBuffer& g = job.g;
     const int columns = tile.x1 - x0 < 4 ? tile.x1 - x0 : 4, rows = tile.y1 - y0 < 4 ? tile.y1 - y0 : 4;
     for (int row = 0; row < rows; ++row) {
