@@ -17,6 +17,7 @@ _HOMES = {
     **dict.fromkeys(("PointLight", "SpotLight", "DirectionalLight", "EnvironmentLight"), "scenes.values"),
     "load_scene": "scenes.load",
     "SceneError": "errors",
+    "Motion": "motion",
     **dict.fromkeys(("Frame",), "frame"),
     **dict.fromkeys(("Profile", "Stage"), "profile"),
     **dict.fromkeys(("trace_gbuffer", "voxelize", "light_voxels", "prefilter", "march", "glossy", "shadow", "sky", "shade"), "stages"),
@@ -31,7 +32,7 @@ _HOMES = {
     "report": "study.report",
     "about": "machine",  # not a module of that name: importing it would put the module in the function's place
 }
-_MODULES = ("methods", "scenes", "metrics", "charts")
+_MODULES = ("methods", "scenes", "metrics", "charts", "stability")
 
 
 def _is_technique(name: str, value: Any) -> bool:
@@ -65,10 +66,12 @@ if TYPE_CHECKING:
     from interreflect import methods as methods
     from interreflect import metrics as metrics
     from interreflect import scenes as scenes
+    from interreflect import stability as stability
     from interreflect._core import Grid as Grid
     from interreflect.errors import SceneError as SceneError
     from interreflect.frame import Frame as Frame
     from interreflect.machine import about as about
+    from interreflect.motion import Motion as Motion
     from interreflect.profile import Profile as Profile
     from interreflect.profile import Stage as Stage
     from interreflect.scenes.load import load_scene as load_scene

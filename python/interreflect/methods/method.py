@@ -104,8 +104,11 @@ class Method(ABC):
         return {}
 
     @abstractmethod
-    def compose(self, view: View, profile: Profile) -> tuple[Image, Image]:
-        """Direct and indirect light of one view: the stages in order, each under `profile.stage(name)`."""
+    def compose(self, view: View, profile: Profile) -> tuple[Image, Image] | tuple[Image, Image, Any]:
+        """Direct and indirect light of one view: the stages in order, each under `profile.stage(name)`.
+
+        A method with memory gives its history as a third; the next frame finds it in `view.history`, None in the first.
+        """
 
     def exact_knobs(self) -> dict[str, Any]:
         """Field -> technique for every field that holds a technique (what may be replaced by its exact counterpart)."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -10,6 +11,7 @@ import numpy as np
 
 from interreflect import _core
 from interreflect.frame import Frame
+from interreflect.motion import Motion
 from interreflect.profile import Profile
 from interreflect.scenes.camera import Camera, checked_size
 from interreflect.scenes.scene import Scene
@@ -66,8 +68,20 @@ class Prepared:
         with _core.Threads(threads if threads is not None else self.threads):
             _ = shown.core  # a scene that was never rendered builds its hierarchy outside the frame's clock
             with profile.frame():
-                direct, indirect = self.method.compose(view, profile)
-        return Frame(direct, indirect, profile)
+                direct, indirect, *kept = self.method.compose(view, profile)
+        return Frame(direct, indirect, profile, *kept)
+
+    def play(self, motion: Motion, size: tuple[int, int] | None = None, seed: int = 0, threads: int | None = None) -> Iterator[Frame]:
+        """The frames of a motion, one after the other; each gets the last one's history, and frame k the seed `seed` + k.
+
+        ValueError where the scene lacks the motion's camera, light or body.
+        """
+        history = None
+        for k in range(motion.frames):
+            scene, camera = motion.at(self.scene, k)
+            frame = self.render(camera, size=size, seed=(seed + k) % 2**32, threads=threads, scene=scene, history=history)
+            history = frame.history
+            yield frame
 
     def _key(self) -> str:
         return f"{self.method!r} {self.scene.still_hash}"

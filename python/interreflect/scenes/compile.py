@@ -148,7 +148,7 @@ def _build_hierarchy(scene: Scene, tables: _Tables) -> _Hierarchy:
     return built
 
 
-def _turn(axis: NDArray[np.float64], degrees: float) -> NDArray[np.float64]:
+def rotation_about(axis: NDArray[np.float64], degrees: float) -> NDArray[np.float64]:
     """Rotation matrix about a unit axis, counter-clockwise seen against it (Rodrigues)."""
     x, y, z = axis
     cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
@@ -163,10 +163,10 @@ def environment_rotation(up: Any, degrees: float) -> NDArray[np.float64]:
     axis = np.cross([0.0, 1.0, 0.0], to)
     length = float(np.linalg.norm(axis))
     if length > 1e-9:
-        upright = _turn(axis / length, float(np.degrees(np.arctan2(length, to[1]))))
+        upright = rotation_about(axis / length, float(np.degrees(np.arctan2(length, to[1]))))
     else:
         upright = np.diag([1.0, np.sign(to[1]), np.sign(to[1])])
-    return np.ascontiguousarray(_turn(to, degrees) @ upright)
+    return np.ascontiguousarray(rotation_about(to, degrees) @ upright)
 
 
 def _light(light: Any) -> Any:

@@ -12,18 +12,22 @@ from interreflect.scenes.values import Camera, Material, Mesh, Scene, SpotLight
 
 
 @built_in
-def ball_on_floor(radius: Annotated[float, Knob("of the ball", 0.005, 0.2, unit="extents")] = 0.1) -> Scene:
-    """A smooth white ball on a white floor of side 1, a spot on the wall to the left: all that the camera sees is lit by the wall.
+def ball_on_floor(radius: Annotated[float, Knob("of the ball, and with it all else", 0.005, 0.1, unit="extents")] = 0.1) -> Scene:
+    """A smooth white ball on a white floor, a spot on the wall to the left: the ball and most of the floor are lit by the wall.
 
-    Camera "front" is as far from the ball as this is wide, so that every radius makes the same picture of it.
+    Floor and wall are ten radii long; a black plate of side 1 below keeps the bounds, so that every radius makes the same picture
+    from voxels of another size. Camera "front".
     """
     r = radius
-    floor = quad((-0.5, 0, 0.5), (1, 0, 0), (0, 0, -1))
-    wall = quad((-0.5, 0, 0.5), (0, 0, -1), (0, 0.6, 0))
+    floor = quad((-5 * r, 0, 5 * r), (10 * r, 0, 0), (0, 0, -10 * r))
+    wall = quad((-5 * r, 0, 5 * r), (0, 0, -10 * r), (0, 6 * r, 0))
+    plate = quad((-0.5, -0.01, 0.5), (1, 0, 0), (0, 0, -1))
     white = Material(name="white", albedo=(0.75, 0.75, 0.75))
-    spot = SpotLight(position=(0.45, 0.5, 0), direction=(-1, -0.15, 0), intensity=(3, 3, 3), inner=12, outer=16)
+    strength = (300 * r * r,) * 3  # irradiance stays
+    spot = SpotLight(position=(4.5 * r, 5 * r, 0), direction=(-1, -0.15, 0), intensity=strength, inner=12, outer=16)
     camera = Camera(position=(0, 2.2 * r, 4.5 * r), target=(0, 0.8 * r, 0), fov_x=45, size=(640, 480))
-    return Scene(meshes=[mesh(floor, white), mesh(wall, white), _ball(r)], lights=[spot], cameras={"front": camera})
+    meshes = [mesh(floor, white), mesh(wall, white), _ball(r), mesh(plate, Material(name="plate", albedo=(0, 0, 0)))]
+    return Scene(meshes=meshes, lights=[spot], cameras={"front": camera})
 
 
 def _ball(radius: float) -> Mesh:

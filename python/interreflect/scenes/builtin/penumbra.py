@@ -20,7 +20,7 @@ SEEN = 1.5  # half width of the picture over the penumbra's
 
 @built_in
 def penumbra(
-    height: Annotated[float, Knob("of the blocker above the floor", 0, 0.5, open_minimum=True, unit="extents")] = 0.2,
+    height: Annotated[float, Knob("of the blocker above the floor", 0, 0.4, open_minimum=True, unit="extents")] = 0.2,
 ) -> Scene:
     """A black half plane x < 0 hangs between a floor of side 1 and a square light of side .2 at height .6, exitance 1.
 

@@ -1,0 +1,10 @@
+"""Where does a method break? Failures, the atlas of break points, methods in motion, and what must not change a picture."""
+
+from interreflect.stability.failure import Failure, Reading
+from interreflect.stability.moving_failures import MOVING
+from interreflect.stability.still_failures import STILL
+from interreflect.stability.temporal import Played, motion
+
+failures: tuple[Failure, ...] = (*STILL, *MOVING)
+
+__all__ = ["Failure", "Played", "Reading", "failures", "motion"]

@@ -1,0 +1,1 @@
+"""What failures measure. Each function takes a Trial (and settings) and gives a Reading."""
