@@ -57,13 +57,13 @@ class ShadowPackets {
     std::size_t rays() const { return rays_; }
 
   private:
+    RayPacket packet_;  // first: it is aligned to 64 bytes
     DirectLight& result_;
     const Intersector& intersector_;
-    RayPacket packet_;
-    std::array<vec3, RayPacket::width> reflected_;
     std::array<std::size_t, RayPacket::width> pixel_;
-    int count_ = 0;
     std::size_t rays_ = 0;
+    std::array<vec3, RayPacket::width> reflected_;
+    int count_ = 0;
 };
 
 /// What a pixel reflects of a delta light that nothing hides.

@@ -103,8 +103,8 @@ class Lighting {
         const bool back = cosine < 0.0f;
         if (back && (!technique_.both_sides || point.back == 0)) return;
         const vec3 origin = point.position + point.normal * (back ? -point.offset : point.offset);
-        // Lights end just before themselves: an emitter must not shadow its own light.
-        batch_.rays.push_back({origin, 0.0f, direction, distance * 0.9999f});
+        // Rays end short of an emitter by more than rounding and the offset move either end: it must not shadow its own light.
+        batch_.rays.push_back({origin, 0.0f, direction, distance * 0.9999f - 2.0f * point.offset});
         batch_.irradiance.push_back(irradiance * std::fabs(cosine));
         batch_.target.push_back(static_cast<std::uint32_t>(2 * k) + (back ? 1U : 0U));
     }
