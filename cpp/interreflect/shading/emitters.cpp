@@ -124,6 +124,7 @@ void EmitterSampler::append_weights(const Triangle& triangle) {
     const auto pieces = static_cast<std::uint32_t>(triangle.cuts * triangle.cuts);
     const float piece_area = triangle.area / static_cast<float>(pieces);
     constexpr int n = 4;  // points along a piece's edge: finer than the texels it spans
+    constexpr int points = n * (n + 1) / 2;
     const auto along = [](int k) { return (static_cast<float>(k) + 1.0f / 3.0f) / n; };
     const float whole = luminance(scene_->emitters[index].radiance);
     for (std::uint32_t k = 0; k < pieces; ++k) {
@@ -134,7 +135,7 @@ void EmitterSampler::append_weights(const Triangle& triangle) {
             for (int i = 0; i < n; ++i)
                 for (int j = 0; i + j < n; ++j) sum += radiance(triangle, point_in(piece, triangle.cuts, {along(i), along(j)}));
             // A tenth by the triangle's mean: a bright point that the pattern missed keeps a density, and so the mean is right.
-            mean = 0.9f * luminance(sum) / (n * (n + 1) / 2) + 0.1f * glm::max(whole, 1e-3f * luminance(triangle.emission));
+            mean = 0.9f * luminance(sum) / points + 0.1f * glm::max(whole, 1e-3f * luminance(triangle.emission));
         }
         cdf_.push_back(mean * piece_area);
         of_piece_.push_back(index);
