@@ -29,6 +29,7 @@ _HOMES = {
     **dict.fromkeys(("Reference", "reference"), "study.reference"),
     **dict.fromkeys(("pareto", "cheapest", "best", "equal_time", "equal_error"), "study.pareto"),
     "attribute": "study.attribution",
+    "ladder": "study.ladder",
     "report": "study.report",
     "about": "machine",  # not a module of that name: importing it would put the module in the function's place
 }
@@ -96,6 +97,7 @@ if TYPE_CHECKING:
     from interreflect.stages import trace_gbuffer as trace_gbuffer
     from interreflect.stages import voxelize as voxelize
     from interreflect.study.attribution import attribute as attribute
+    from interreflect.study.ladder import ladder as ladder
     from interreflect.study.pareto import best as best
     from interreflect.study.pareto import cheapest as cheapest
     from interreflect.study.pareto import equal_error as equal_error

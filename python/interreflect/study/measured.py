@@ -33,3 +33,13 @@ def measured(study: Study, folder: str | Path) -> list[tuple[Record, ...]]:
 def same(method: Method) -> str:
     """Equal for methods with equal knobs."""
     return repr((method.name, sorted(method.knobs().items(), key=lambda knob: knob[0])))
+
+
+def words(method: Method) -> str:
+    """The method and the knobs in which it differs from its defaults; a technique that differs gives its name and its own knobs."""
+    try:
+        usual: dict[str, Any] = type(method)().knobs()
+    except TypeError:  # a method without defaults
+        usual = {}
+    changed = {path: value for path, value in method.knobs().items() if path not in usual or usual[path] != value}
+    return f"{method.name} {', '.join(f'{path}={value}' for path, value in changed.items())}".strip()
