@@ -46,6 +46,17 @@ def test_every_mean_position_lies_in_its_voxel(technique):
     assert local.min() > -1e-4 and local.max() < 1 + 1e-4
 
 
+def test_mean_positions_and_normals_of_a_slanted_plane_lie_on_it(technique):
+    # y = 0.3 x + 0.7 z: slopes differ, so that no two axes may be exchanged.
+    slanted = quad([[x, 0.3 * x + 0.7 * z, z] for x, z in ((-1, 1), (1, 1), (1, -1), (-1, -1))])
+    grid = voxels_of(technique, scene_of(slanted), 24)
+    x, y, z = grid.position.T
+    # Rounding of coordinates of 1, in voxels of 1/12; a sample's own place in its cell is exact.
+    assert np.abs(y - 0.3 * x - 0.7 * z).max() < 1e-4 * grid.domain.voxel_size
+    normal = np.array([-0.3, 1, -0.7]) / np.sqrt(0.09 + 1 + 0.49)
+    assert np.allclose(grid.normal, normal, atol=1e-5)
+
+
 def test_the_surface_of_a_cube_takes_the_outer_voxels(technique):
     # The outer walls lie half a voxel inside the domain, so they take the outermost voxels and no others.
     for n in (2, 5, 16):
