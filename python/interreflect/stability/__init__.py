@@ -1,5 +1,6 @@
 """Where does a method break? Failures, the atlas of break points, methods in motion, and what must not change a picture."""
 
+from interreflect.stability.break_points import Atlas, atlas
 from interreflect.stability.failure import Failure, Reading
 from interreflect.stability.moving_failures import MOVING
 from interreflect.stability.still_failures import STILL
@@ -7,4 +8,4 @@ from interreflect.stability.temporal import Played, motion
 
 failures: tuple[Failure, ...] = (*STILL, *MOVING)
 
-__all__ = ["Failure", "Played", "Reading", "failures", "motion"]
+__all__ = ["Atlas", "Failure", "Played", "Reading", "atlas", "failures", "motion"]

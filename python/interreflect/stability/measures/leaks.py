@@ -8,17 +8,20 @@ from numpy.typing import NDArray
 from interreflect.scenes.builtin.blade import ALBEDO as BLADE_FLOOR
 from interreflect.scenes.builtin.blocked_sky import ALBEDO as SKY_FLOOR
 from interreflect.scenes.builtin.blocked_sky import sky_share
+from interreflect.scenes.builtin.lone_ball import lone_ball
 from interreflect.scenes.builtin.penumbra import ALBEDO as PENUMBRA_FLOOR
 from interreflect.scenes.builtin.penumbra import SEEN as PENUMBRA_SEEN
 from interreflect.scenes.builtin.penumbra import irradiance, penumbra_width
 from interreflect.stability.failure import Reading, Trial
 from interreflect.stages import trace_gbuffer
 
+PLACES = (0.0, 0.0047, 0.0083, 0.0129)  # extents: near 0, .3, .5 and .8 of a voxel of a grid of 64
+
 
 def leak(trial: Trial) -> Reading:
     """Mean radiance that the camera "dark" sees over that which "lit" sees; the truth is 0."""
     dark, lit = trial.render("dark"), trial.render("lit")
-    return Reading(_mean(dark.image) / _mean(lit.image), dark.image)
+    return Reading(_mean(dark.image) / _mean(lit.image), dark.image, np.zeros_like(dark.image))
 
 
 def leak_on_body(trial: Trial, body: str) -> Reading:
@@ -26,7 +29,7 @@ def leak_on_body(trial: Trial, body: str) -> Reading:
     scene = trial.scene
     own = trace_gbuffer(scene, "dark", trial.size).body == list(scene.bodies).index(body)
     dark, lit = trial.render("dark"), trial.render("lit")
-    return Reading(_mean(dark.image[own]) / _mean(lit.image), dark.image)
+    return Reading(_mean(dark.image[own]) / _mean(lit.image), dark.image, np.zeros_like(dark.image))
 
 
 def occlusion(trial: Trial, blocker: str) -> Reading:
@@ -38,9 +41,9 @@ def occlusion(trial: Trial, blocker: str) -> Reading:
 
 
 def self_illumination(trial: Trial) -> Reading:
-    """Indirect over direct light of a convex body; the truth is 0."""
-    frame = trial.render()
-    return Reading(_mean(frame.indirect) / _mean(frame.direct), frame.image)
+    """Indirect over direct light of a convex body, mean over four places within a voxel; the truth is 0."""
+    frames = [trial.render(scene=lone_ball(radius=trial.value, shift=shift)) for shift in PLACES]
+    return Reading(float(np.mean([_mean(frame.indirect) / _mean(frame.direct) for frame in frames])), frames[0].indirect, frames[0].image)
 
 
 def false_shadow(trial: Trial) -> Reading:
