@@ -26,6 +26,8 @@ if TYPE_CHECKING:
 FORMAT = 1
 WAITS, FAILED = "waits", "failed"
 HERE = Path(__file__).resolve().parent
+# Files of this package that decide what is measured; the others decide where, or draw.
+MEASURING = ("failure.py", "moving_failures.py", "reprojection.py", "similar.py", "still_failures.py", "temporal.py")
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -210,7 +212,7 @@ class _Store:
         scene = row.scene(value)
         identity = {
             "format": FORMAT,
-            "sources": source_digest(method.__class__, *sorted(HERE.rglob("*.py"))),
+            "sources": source_digest(method.__class__, *(HERE / name for name in MEASURING), *sorted((HERE / "measures").glob("*.py"))),
             "method": [method.name, {path: str(knob) for path, knob in method.knobs().items()}],
             "failure": [row.name, value, row.camera, list(row.size)],
             "scene": [scene.hash, {name: dataclasses.asdict(camera) for name, camera in scene.cameras.items()}],
