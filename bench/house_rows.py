@@ -9,14 +9,12 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable
 from contextlib import ExitStack
 from pathlib import Path
-from typing import Any
 from unittest import mock
 
 import interreflect as ir
-import interreflect.study.run as study_run
+from bench.counted import NOTES, CountedAmbient, noted
 from bench.rows import Row, absent, within
 from bench.sponza import PATH
 from bench.timing import least, timed
@@ -31,39 +29,25 @@ def rows() -> list[Row]:
 
 
 def study_overhead(cells: int = 60) -> Row:
-    """Wall time of a study's cells outside the frames and the metrics, its truth made before."""
-    scene = ir.scenes.cornell_box()
-    spent = [0.0]
+    """Wall time of a study's cells outside the frames and the metrics, its truth made and its worker started before."""
+    scene, reference = ir.scenes.cornell_box(), ir.Reference(noise=0.5, max_spp=16)
 
-    def counted(call: Callable[..., Any]) -> Callable[..., Any]:
-        def counting(*given: Any, **named: Any) -> Any:
-            start = time.perf_counter()
-            try:
-                return call(*given, **named)
-            finally:
-                spent[0] += time.perf_counter() - start
+    def study(name: str, seeds: range) -> ir.Study:
+        return ir.Study(
+            name=name, scenes=[scene], methods=[CountedAmbient()], size=(160, 90), seeds=seeds, reference=reference, repeats=2,
+            max_repeats=2,
+        )  # fmt: skip
 
-        return counting
-
-    reference = ir.Reference(noise=0.5, max_spp=16)
-    seeds = range(cells)
-    study = ir.Study(
-        name="overhead", scenes=[scene], methods=[ir.methods.ConstantAmbient()], size=(160, 90), seeds=seeds, reference=reference,
-        repeats=2, max_repeats=2,
-    )  # fmt: skip
-    prepared = type(study.methods[0].prepare(scene))
     with tempfile.TemporaryDirectory() as folder, ExitStack() as stack:
-        stack.enter_context(mock.patch.dict(os.environ, {"INTERREFLECT_CACHE": folder}))
-        ir.reference(scene, None, study.size, 1, reference.noise, reference.max_spp)
-        stack.enter_context(mock.patch.object(prepared, "render", counted(prepared.render)))
-        for metrics in (study_run.ON_IMAGE, study_run.ON_INDIRECT):
-            stack.enter_context(mock.patch.dict(metrics, {name: counted(metric) for name, metric in metrics.items()}))
-        start = time.perf_counter()
-        records = ir.run(study, Path(folder) / "study")
-        whole = time.perf_counter() - start
+        notes = Path(folder) / "notes"
+        stack.enter_context(mock.patch.dict(os.environ, {"INTERREFLECT_CACHE": folder, NOTES: str(notes)}))
+        ir.run(study("first", range(cells, cells + 1)), Path(folder) / "study")
+        start, before = time.perf_counter(), noted(notes)
+        records = ir.run(study("overhead", range(cells)), Path(folder) / "study")
+        own = time.perf_counter() - start - (noted(notes) - before)
     if not (records.table["status"] == "ok").all():
         raise RuntimeError(f"a cell of the study failed: {records.table['failure'].dropna().tolist()}")
-    return within("study layer, a cell", 1e3 * (whole - spent[0]) / cells, None, 5, note=f"mean of {cells} cells, pictures kept")
+    return within("study layer, a cell", 1e3 * own / cells, None, 5, note=f"mean of {cells} cells, pictures kept")
 
 
 def start_rows() -> list[Row]:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import dataclasses
 import hashlib
-import itertools
 import os
+import signal
+import time
 from types import SimpleNamespace
 
 import numpy as np
@@ -53,7 +54,6 @@ class Fake:
     time: float = 1.0
     mode: str = "ok"
     bounces: int | None = 1
-    renders = itertools.count()  # of all fakes, to see what a resumed study renders again
 
     @property
     def name(self):
@@ -81,7 +81,9 @@ class FakePrepared:
     precompute_milliseconds: float = 7.0
 
     def render(self, camera=None, size=None, seed=0, threads=None):
-        next(Fake.renders)
+        note_render()
+        if self.method.mode in DISASTERS:
+            DISASTERS[self.method.mode]()
         if self.method.mode == "raises":
             raise RuntimeError("lamp broken")
         direct, indirect = truth_of(self.scene, size)
@@ -117,7 +119,47 @@ class FakePathTraced:
         return frame(direct, (indirect * noise).astype(np.float32))
 
 
+def lasting(table):
+    """The columns that are the same however often a study with fakes, whose times are given, is run."""
+    return table.drop(columns=["peak_memory_bytes"])
+
+
+TRUTH = "STUDY_FAKES_TRUTH"  # set: truths by FakePathTracing, in every process that imports this file
+
+
+real_path_tracer = reference_module.path_tracer
+reference_module.path_tracer = lambda: FakePathTracing if TRUTH in os.environ else real_path_tracer()
+
+
 def use_fake_truth(folder):
-    """Let truths come from FakePathTracing and be cached below `folder`, in a process that does nothing else."""
-    reference_module.path_tracer = lambda: FakePathTracing
+    """Let truths come from FakePathTracing and be cached below `folder`, in this process and its workers."""
+    os.environ[TRUTH] = "1"
     os.environ["INTERREFLECT_CACHE"] = str(folder)
+
+
+def note_render():
+    """A byte for every render of any fake in any process, where a test wants to count them."""
+    if "STUDY_FAKES_RENDERS" in os.environ:
+        with open(os.environ["STUDY_FAKES_RENDERS"], "ab") as file:
+            file.write(b".")
+
+
+def eat_memory():
+    eaten = [np.ones(2**24, np.uint8) for _ in range(64)]  # 1 GiB
+    time.sleep(60)
+    return eaten
+
+
+def eat_memory_briefly():
+    np.ones(2**28, np.uint8)
+
+
+DISASTERS = {
+    "crashes": lambda: os.kill(os.getpid(), signal.SIGSEGV),
+    "is killed": lambda: os.kill(os.getpid(), signal.SIGKILL),
+    "leaves": lambda: os._exit(3),
+    "hangs": lambda: time.sleep(600),
+    "eats memory": eat_memory,
+    "eats memory briefly": eat_memory_briefly,
+    "prints": lambda: print("a word from a method"),
+}

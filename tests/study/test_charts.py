@@ -34,11 +34,9 @@ METHODS = [
 def records(tmp_path_factory):
     import study_fakes
 
-    import interreflect.study.reference as reference_module
-
     folder = tmp_path_factory.mktemp("study")
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(reference_module, "path_tracer", lambda: study_fakes.FakePathTracing)
+        patch.setenv(study_fakes.TRUTH, "1")
         patch.setenv("INTERREFLECT_CACHE", str(folder / "cache"))
         scenes = [Scene(), Scene("<bright & wide>", 3.0)]
         run(Study(name="a < b?", scenes=scenes, methods=METHODS, size=(24, 16), repeats=1), folder / "r")

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pandas as pd
 import pytest
+from study_fakes import lasting
 
 from interreflect.study.store import load_records
 
@@ -63,7 +64,7 @@ def test_a_killed_study_resumes_to_the_table_of_an_unbroken_one(tmp_path, kills)
         before = cells("killed")
     last = start("killed")
     assert last.wait(60) == 0, last.stderr.read()
-    tables = [load_records(tmp_path / folder / "r").table for folder in ("whole", "killed")]
+    tables = [lasting(load_records(tmp_path / folder / "r").table) for folder in ("whole", "killed")]
     assert len(tables[0]) == CELLS
     pd.testing.assert_frame_equal(*tables)
     assert not list(tmp_path.rglob("*.part")) + list(tmp_path.rglob("*.damaged"))

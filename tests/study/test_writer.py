@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import threading
 import time
 from typing import Any
 
@@ -23,21 +22,21 @@ def test_a_folder_that_cannot_be_written_ends_the_study_and_leaves_no_record(tmp
     def full(*_: Any) -> None:
         raise OSError("no space left on device")
 
-    monkeypatch.setattr(Store, "write_pictures", full)
+    monkeypatch.setattr(Store, "write", full)
     with pytest.raises(OSError, match="no space left"):
         run(study(), tmp_path / "r")
     assert not list((tmp_path / "r").glob("cells/*"))
 
 
 def test_nothing_is_written_while_a_frame_is_timed(tmp_path, fake_truth, monkeypatch):
-    writing, met = threading.Event(), []
+    writing, met = tmp_path / "writing", tmp_path / "met"
     keep = Store.write
 
-    def slow(self: Store, record: Any) -> None:
-        writing.set()
+    def slow(self: Store, *cell: Any) -> None:
+        writing.touch()
         time.sleep(0.1)
-        keep(self, record)
-        writing.clear()
+        keep(self, *cell)
+        writing.unlink()
 
     monkeypatch.setattr(Store, "write", slow)
 
@@ -49,7 +48,8 @@ def test_nothing_is_written_while_a_frame_is_timed(tmp_path, fake_truth, monkeyp
             def watched(*given: Any, **named: Any) -> Any:
                 calls.append(None)
                 if len(calls) > 1:  # the first call warms up
-                    met.append(writing.is_set())
+                    with met.open("a") as file:
+                        file.write("in the way\n" if writing.exists() else "alone\n")
                 return render(*given, **named)
 
             object.__setattr__(prepared, "render", watched)  # a frozen value
@@ -57,7 +57,7 @@ def test_nothing_is_written_while_a_frame_is_timed(tmp_path, fake_truth, monkeyp
 
     watched = Study(name="w", scenes=[Scene()], methods=[Watching(error=e) for e in (0.1, 0.2, 0.3)], size=(32, 24), repeats=2)
     run(watched, tmp_path / "r")
-    assert len(met) >= 6 and not any(met)
+    assert len(met.read_text().splitlines()) >= 6 and set(met.read_text().splitlines()) == {"alone"}
 
 
 def test_pictures_and_records_are_whole_when_a_run_returns(tmp_path, fake_truth):

@@ -2,30 +2,38 @@
 
 from __future__ import annotations
 
+import errno
 import hashlib
 import json
 import os
+import socket
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import IO, Any
 
-PART = ".part"  # suffix of files being written: <name>.<process>.part
+PART = ".part"  # suffix of files being written: <name>.<host>.<process>.part
 DAMAGED = ".damaged"
+HOST = socket.gethostname().replace(".", "-")  # folders may be shared between machines
+NO_ROOM = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
 
 
 class DamagedFile(ValueError):
     """A file whose content is not what was written."""
 
 
+class DiskFull(OSError):
+    """There is no room for a file; what was written before is whole."""
+
+
 @contextmanager
 def replacing(path: Path, sync: bool = True) -> Iterator[IO[bytes]]:
     """A binary file that appears under `path` only once it is whole: temporary name, fsync, rename.
 
-    `sync=False` leaves the fsync out, for files whose damage shows when they are read.
+    `sync=False` leaves the fsync out, for files whose damage shows when they are read. DiskFull where there is no room.
     """
     path.parent.mkdir(parents=True, exist_ok=True)
-    part = path.with_name(f"{path.name}.{os.getpid()}{PART}")
+    part = path.with_name(f"{path.name}.{HOST}.{os.getpid()}{PART}")
     try:
         with open(part, "wb") as file:
             yield file
@@ -33,15 +41,20 @@ def replacing(path: Path, sync: bool = True) -> Iterator[IO[bytes]]:
             if sync:
                 os.fsync(file.fileno())
         os.replace(part, path)
+    except OSError as error:
+        if error.errno in NO_ROOM:
+            raise DiskFull(error.errno, f"no room for {path}; what was written before is whole ({os.strerror(error.errno)})") from error
+        raise
     finally:
         part.unlink(missing_ok=True)
 
 
 def remove_parts(folder: Path) -> None:
-    """Remove what processes that no longer run left half written."""
+    """Remove what processes of this machine that no longer run left half written."""
     for part in folder.rglob(f"*{PART}"):
-        process = part.name.removesuffix(PART).rpartition(".")[2]
-        if process.isdigit() and int(process) != os.getpid() and not Path(f"/proc/{process}").exists():
+        rest, _, process = part.name.removesuffix(PART).rpartition(".")
+        host = rest.rpartition(".")[2]
+        if host == HOST and process.isdigit() and int(process) != os.getpid() and not Path(f"/proc/{process}").exists():
             part.unlink(missing_ok=True)
 
 

@@ -24,8 +24,12 @@ METRICS = (
 )  # fmt: skip
 FIXED = (
     "scene", "camera", "bounces", "method", "seed", "status", "failure",
-    "milliseconds", "milliseconds_p95", "precompute_milliseconds", *METRICS, "noise", "indirect_noise",
+    "milliseconds", "milliseconds_p95", "precompute_milliseconds", "peak_memory_bytes", *METRICS, "noise", "indirect_noise",
     "width", "height", "threads", "repeats", "truth_spp", "scene_hash", "processor", "compiler", "commit", "warnings", "key",
+)  # fmt: skip
+# Columns (beside `stage.<name>.milliseconds`) that differ when the same cell is measured again.
+OF_THE_MOMENT = (
+    "milliseconds", "milliseconds_p95", "precompute_milliseconds", "peak_memory_bytes", "repeats",
 )  # fmt: skip
 
 
@@ -51,6 +55,8 @@ class Record:
     milliseconds: float = math.nan
     milliseconds_p95: float = math.nan
     precompute_milliseconds: float = math.nan
+    peak_memory_bytes: float = math.nan  # of the worker while it prepared and rendered, above an idle one's
+    limits: Mapping[str, float] = dataclasses.field(default_factory=dict)  # timeout or memory, where the cell passed it
     metrics: Mapping[str, float] = dataclasses.field(default_factory=dict)
     stages: Mapping[str, Mapping[str, Any]] = dataclasses.field(default_factory=dict)
     noise: float = math.nan

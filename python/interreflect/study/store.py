@@ -17,11 +17,10 @@ from typing import Any
 import numpy as np
 
 from interreflect.study.files import DamagedFile, read_checked, remove_parts, replacing, set_aside, write_checked
-from interreflect.study.interface import Frame
+from interreflect.study.messages import Pair
 from interreflect.study.records import Record, Records
-from interreflect.study.reference import Truth
 
-FORMAT = 1
+FORMAT = 2
 
 
 class Store:
@@ -43,25 +42,24 @@ class Store:
             record = Record.from_content(read_checked(path, FORMAT))
         except FileNotFoundError:
             return None
-        except (DamagedFile, TypeError, KeyError):
+        except (ValueError, TypeError, KeyError):  # damaged, or of another format
             set_aside(path)
             return None
         if record.images and not (self._whole(self._image(key)) and self._whole(self._truth(record.truth))):
-            path.unlink()
+            path.unlink(missing_ok=True)
             return None
         return record
 
-    def write_pictures(self, key: str, frame: Frame, truth: Truth) -> None:
-        """Keep the pictures of a cell and of its truth; before its record, which says that they are there."""
-        with replacing(self._image(key)) as file:
-            np.savez(file, allow_pickle=False, image=frame.image, indirect=frame.indirect)
-        if not self._truth(truth.key).exists():
-            with replacing(self._truth(truth.key)) as file:
-                np.savez(file, allow_pickle=False, image=truth.image, indirect=truth.indirect)
-
-    def write(self, record: Record) -> None:
-        """Keep a cell's record."""
+    def write(self, record: Record, pictures: Pair | None, truth: Pair | None) -> None:
+        """Keep a cell. The pictures go first: the record says that they are there."""
+        if pictures is not None:
+            _save_pair(self._image(record.key), pictures)
+        if truth is not None:
+            _save_pair(self._truth(record.truth), truth)
         write_checked(self._cell(record.key), record.as_content(), FORMAT)
+
+    def has_truth(self, key: str) -> bool:
+        return self._truth(key).exists()
 
     def load(self) -> Records:
         """The records of the study that ran here last. FileNotFoundError where none did."""
@@ -103,6 +101,11 @@ class Store:
             pass
         set_aside(path)
         return False
+
+
+def _save_pair(path: Path, pair: Pair) -> None:
+    with replacing(path) as file:
+        np.savez(file, allow_pickle=False, image=pair[0], indirect=pair[1])
 
 
 def load_records(folder: str | Path) -> Records:

@@ -2,21 +2,22 @@
 
 from __future__ import annotations
 
+from collections import deque
+from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor, wait
 
-from interreflect.study.interface import Frame
+from interreflect.study.messages import Pair
 from interreflect.study.records import Record
-from interreflect.study.reference import Truth
 from interreflect.study.store import Store
 
 
 class Writer:
-    """One thread that writes what it is given, in order: a cell's pictures, then its record. Leaving the block waits for all of it."""
+    """One thread that writes the cells it is given, in order. Leaving the block waits for all of them."""
 
     def __init__(self, store: Store) -> None:
         self._store = store
         self._thread = ThreadPoolExecutor(1)
-        self._pending: list[Future[None]] = []
+        self._pending: deque[Future[None]] = deque()
 
     def __enter__(self) -> Writer:
         return self
@@ -26,18 +27,13 @@ class Writer:
         if failure is None:
             self._raise_failures()
 
-    def pictures(self, key: str, frame: Frame, truth: Truth) -> None:
-        self._pending.append(self._thread.submit(self._store.write_pictures, key, frame, truth))
-
-    def record(self, record: Record) -> None:
-        """The last thing of a cell. OSError where an earlier one could not be written."""
+    def write(self, record: Record, pictures: Pair | None, truth: Pair | None, then: Callable[[], None]) -> None:
+        """A cell, and then `then()`. OSError where an earlier one could not be written."""
         self._raise_failures()
-        before = list(self._pending)
 
         def write() -> None:
-            for earlier in before:
-                earlier.result()  # a record whose pictures could not be written is not written either
-            self._store.write(record)
+            self._store.write(record, pictures, truth)
+            then()
 
         self._pending.append(self._thread.submit(write))
 
@@ -46,7 +42,5 @@ class Writer:
         wait(self._pending)
 
     def _raise_failures(self) -> None:
-        done = [future for future in self._pending if future.done()]
-        self._pending = [future for future in self._pending if future not in done]
-        for future in done:
-            future.result()
+        while self._pending and self._pending[0].done():
+            self._pending.popleft().result()

@@ -1,0 +1,100 @@
+"""What a study and its worker processes say to each other: pickles with their length before them, through pipes."""
+
+from __future__ import annotations
+
+import dataclasses
+import pickle
+import struct
+from typing import IO, Any
+
+from interreflect.study.interface import Image
+from interreflect.study.reference import Reference
+
+LENGTH = struct.Struct("<Q")
+Pair = tuple[Image, Image]  # image, indirect light
+
+
+@dataclasses.dataclass(frozen=True)
+class Surroundings:
+    """The parent's, when a study begins. Answered by Ready."""
+
+    path: list[str]
+    environment: dict[str, str]
+    folder: str
+
+
+@dataclasses.dataclass(frozen=True)
+class Ready:
+    """fresh: are the files of all modules that the worker loaded as they were? idle: bytes that it holds without any scene."""
+
+    fresh: bool
+    idle: int
+
+
+@dataclasses.dataclass(frozen=True)
+class Request:
+    """One cell to measure. Answered by phases, as they begin, and then by a Reply."""
+
+    scene_hash: str
+    camera: str
+    method: bytes  # pickled
+    seed: int
+    size: tuple[int, int]
+    bounces: int | None
+    reference: Reference
+    threads: int | None
+    repeats: int
+    max_repeats: int
+    images: bool
+    truth_wanted: bool  # its pictures too, as the folder lacks them
+    code: str  # digest of the parent's package: another one must not measure
+    scene: bytes | None = None  # pickled; None: the worker holds it
+
+
+@dataclasses.dataclass(frozen=True)
+class Phase:
+    """What the worker begins to do: "truth", "prepare", "render" or "metrics"; or what it waits for: its "turn", the parent's "go"."""
+
+    name: str
+
+
+@dataclasses.dataclass(frozen=True)
+class Go:
+    """The parent does nothing that disturbs a clock: the worker may start it."""
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Reply:
+    """changes: fields of the cell's record. pictures, truth: image and indirect light, where the folder keeps them."""
+
+    changes: dict[str, Any]
+    pictures: Pair | None = None
+    truth: Pair | None = None
+    interrupted: bool = False
+    refused: str = ""  # why nothing can be measured there at all
+
+
+def send(stream: IO[bytes], message: object) -> None:
+    """Write a message whole. BrokenPipeError where nobody reads any more."""
+    data = pickle.dumps(message, 5)
+    stream.write(LENGTH.pack(len(data)))
+    stream.write(data)
+    stream.flush()
+
+
+def receive(stream: IO[bytes]) -> Any:
+    """The next message. EOFError where the other side is gone."""
+    (length,) = LENGTH.unpack(_exactly(stream, LENGTH.size))
+    return pickle.loads(_exactly(stream, length))
+
+
+def _exactly(stream: IO[bytes], count: int) -> bytearray:
+    """A stream without a buffer gives what is there, which may be less."""
+    data = bytearray(count)
+    view, filled = memoryview(data), 0
+    while filled < count:
+        read = stream.readinto(view[filled:])  # type: ignore[attr-defined]
+        if not read:
+            raise EOFError
+        filled += read
+    return data
