@@ -27,7 +27,7 @@ _HOMES = {
     "Records": "study.records",
     "load_records": "study.store",
     **dict.fromkeys(("Reference", "reference"), "study.reference"),
-    **dict.fromkeys(("pareto", "cheapest", "best", "equal_time", "equal_error"), "study.pareto"),
+    **dict.fromkeys(("pareto", "hypervolume", "knee", "inefficiency", "cheapest", "best", "equal_time", "equal_error"), "study.pareto"),
     "attribute": "study.attribution",
     "ladder": "study.ladder",
     "report": "study.report",
@@ -102,6 +102,9 @@ if TYPE_CHECKING:
     from interreflect.study.pareto import cheapest as cheapest
     from interreflect.study.pareto import equal_error as equal_error
     from interreflect.study.pareto import equal_time as equal_time
+    from interreflect.study.pareto import hypervolume as hypervolume
+    from interreflect.study.pareto import inefficiency as inefficiency
+    from interreflect.study.pareto import knee as knee
     from interreflect.study.pareto import pareto as pareto
     from interreflect.study.records import Records as Records
     from interreflect.study.reference import Reference as Reference

@@ -8,6 +8,7 @@ import pytest
 from study_fakes import Fake, Scene
 
 from interreflect import charts, metrics
+from interreflect.study.configurations import configurations
 from interreflect.study.pareto import pareto
 from interreflect.study.report import report
 from interreflect.study.run import run
@@ -56,8 +57,8 @@ def test_every_measured_configuration_is_a_point_at_its_time_and_error(records):
     figure = charts.speed_accuracy(records)
     assert len(figure.axes) == 2  # one per scene
     for axes, scene in zip(figure.axes, ("plain", "<bright & wide>"), strict=True):
-        table = records.table
-        rows = table[(table["scene"] == scene) & (table["status"] == "ok")]
+        table = configurations(records)
+        rows = table[table["scene"] == scene]
         np.testing.assert_allclose(points(axes), sorted(rows[["milliseconds", "relmse"]].itertuples(index=False, name=None)))
 
 
@@ -149,7 +150,7 @@ def test_the_report_escapes_what_records_say(page):
 def test_the_report_holds_every_configuration_and_failure(records, page):
     assert "lamp broken" in page
     assert "numbers of the picture are not finite" in page
-    for value in records.table.loc[records.table["status"] == "ok", "relmse"]:
+    for value in configurations(records)["relmse"]:
         assert f'data-value="{float(value)!r}"' in page
 
 

@@ -3,16 +3,18 @@
 import math
 from pathlib import Path
 
+import numpy as np
 import pytest
 
-from interreflect.study.pareto import best, cheapest, configurations, equal_error, equal_time, hypervolume, pareto
+from interreflect.study.configurations import configurations
+from interreflect.study.pareto import best, cheapest, equal_error, equal_time, hypervolume, inefficiency, knee, pareto
 from interreflect.study.records import Record, Records
 
 # moocore's own example of a front, in (milliseconds, relmse); (16, .25) and (20, .5) are dominated
 POINTS = [(2, 0.5), (5, 0.2), (16, 0.1), (20, 0.05), (16, 0.25), (20, 0.5)]
 
 
-def record(milliseconds, relmse, method="fake", scene="room", seed=0, noise=1e-6, status="ok", **changes):
+def record(milliseconds, relmse, method="fake", scene="room", seed=0, noise=0.0, status="ok", **changes):
     values = {
         "key": f"{method}{scene}{milliseconds}{relmse}{seed}",
         "scene": scene,
@@ -132,14 +134,75 @@ def test_a_winner_by_less_than_the_noise_says_so():
 
 
 def test_a_bound_closer_than_the_noise_says_so():
-    assert list(cheapest(records(record(5, 0.1, noise=0.01)), relmse=0.105)["note"]) == ["within noise"]
+    assert list(cheapest(records(record(5, 0.1, noise=0.01)), relmse=0.095)["note"]) == ["within noise"]
     assert list(cheapest(records(record(5, 0.1, noise=0.01)), relmse=0.2)["note"]) == [""]
 
 
-@pytest.mark.parametrize("bound", [{}, {"relmse": 0.1, "flip": 0.1}, {"speed": 3}])
-def test_a_bound_is_one_error(bound):
-    with pytest.raises(TypeError, match="takes one bound, one of relmse"):
+def test_several_bounds_hold_at_once():
+    rooms = records(record(5, 0.1, metrics={"relmse": 0.1, "flip": 0.3}), record(9, 0.2, metrics={"relmse": 0.2, "flip": 0.1}))
+    assert list(cheapest(rooms, relmse=0.2, flip=0.2)["milliseconds"]) == [9]
+    assert list(equal_error(rooms, relmse=0.2, flip=0.4)["milliseconds"]) == [5]
+    assert cheapest(rooms, relmse=0.1, flip=0.1).empty
+
+
+@pytest.mark.parametrize("bound", [{}, {"speed": 3}])
+def test_a_bound_is_an_error(bound):
+    with pytest.raises(TypeError, match="takes bounds of relmse"):
         cheapest(records(record(1, 1)), **bound)
+
+
+def test_the_truths_noise_is_subtracted_and_reported():
+    (row,) = configurations(records(record(1, 0.5, noise=0.1))).to_dict("records")
+    assert (row["relmse"], row["noise"]) == (0.4, 0.1)
+    assert cheapest(records(record(1, 0.5, noise=0.02)), relmse=0.49).shape[0] == 1
+
+
+def test_intervals_on_both_axes_come_from_seeds_and_repeats():
+    seeds = [record(t, e, knobs={}, seed=s) for s, (t, e) in enumerate([(1, 0.1), (2, 0.2), (9, 0.6)])]
+    (row,) = configurations(records(*seeds)).to_dict("records")
+    reach = 4.302652729696142 * np.std([0.1, 0.2, 0.6], ddof=1) / math.sqrt(3)  # Student's t, two degrees of freedom, 97.5 %
+    assert (row["relmse_low"], row["relmse_high"]) == pytest.approx((0.3 - reach, 0.3 + reach))
+    assert (row["milliseconds_low"], row["milliseconds_high"]) == (1, 9)
+
+
+def test_a_gain_within_the_intervals_is_not_ranked():
+    rough = [record(1, e, knobs={"spp": 1}, seed=s) for s, e in enumerate([0.4, 0.6, 0.5])]
+    finer = [record(2, e, knobs={"spp": 2}, seed=s) for s, e in enumerate([0.3, 0.6, 0.45])]
+    best_of_all = [record(3, e, knobs={"spp": 3}, seed=s) for s, e in enumerate([0.010, 0.012, 0.011])]
+    assert list(pareto(records(*rough, *finer, *best_of_all))["note"]) == ["", "within noise", ""]
+
+
+def test_work_bytes_and_memory_are_axes_of_their_own():
+    def working(milliseconds, error, rays, size):
+        stages = {
+            "march": {"milliseconds": 1.0, "bytes": size, "counts": {"rays": rays, "steps": 1}},
+            "shade": {"milliseconds": 1.0, "bytes": 1, "counts": {"rays": 5}},
+        }
+        return record(milliseconds, error, stages=stages)
+
+    both = records(working(1, 0.5, 100, 10), working(2, 0.1, 10, 20))
+    assert list(pareto(both, x="work.rays")["work.rays"]) == [15]  # fewer rays and less error
+    assert list(pareto(both, x="bytes")["bytes"]) == [11, 21]
+    with pytest.raises(ValueError, match=r"work\.rays, work\.steps"):
+        pareto(both, x="work.cones")
+
+
+def test_the_knee_is_where_a_front_bends_most():
+    bent = records(record(1, 1.0), record(10, 0.01), record(30, 0.008), record(100, 0.005))
+    assert front(knee(bent)) == [(10, 0.01)]
+    straight = records(record(1, 1.0), record(10, 0.1), record(100, 0.01), record(10000, 1e-4, scene="hall"))
+    assert knee(straight).empty
+    bulging = records(record(1, 1.0), record(10, 0.5), record(100, 0.01))
+    assert knee(bulging).empty
+
+
+def test_inefficiency_is_error_times_time_least_first():
+    table = inefficiency(records(record(1, 0.5), record(2, 0.1), record(100, 0.01)))
+    assert list(table["inefficiency"]) == pytest.approx([0.2, 0.5, 1.0])
+    seeds = [record(2, e, knobs={}, seed=s) for s, e in enumerate([0.1, 0.12, 0.11])]
+    (row,) = inefficiency(records(*seeds)).to_dict("records")
+    assert row["inefficiency_low"] < 0.22 < row["inefficiency_high"]
+    assert row["relmse_low"] * 2 == pytest.approx(row["inefficiency_low"], rel=0.1)
 
 
 def test_columns_that_do_not_rank_are_value_errors():

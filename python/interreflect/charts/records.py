@@ -11,7 +11,8 @@ import numpy as np
 
 from interreflect import metrics
 from interreflect.charts.style import COLOURS, MARKERS, add_legend, dress, new_figure, theme_of
-from interreflect.study.pareto import MERIT, NOISE_OF, VIEW, configurations, pareto
+from interreflect.study.configurations import MERIT, NOISE_OF, VIEW, configurations
+from interreflect.study.pareto import pareto
 from interreflect.study.records import OK, Record, Records
 
 if TYPE_CHECKING:
@@ -40,7 +41,7 @@ def speed_accuracy(records: Records, x: str = "milliseconds", y: str = "relmse",
     Lines join what no other setting of the same method beats; ringed points are beaten by no method. Errors in the shaded
     band are within the truth's own noise. ValueError for columns that do not rank, or if nothing was measured.
     """
-    table, front = configurations(records), pareto(records, x, y)
+    table, front = (_above_zero(rows, y) for rows in (configurations(records), pareto(records, x, y)))
     table = table[(table[x] > 0) & np.isfinite(table[y]) & ((table[y] > 0) | (y == MERIT))]
     _need(table, f"a positive {x} and {y}")
     views = list(table.groupby(VIEW, sort=False))
@@ -57,6 +58,8 @@ def speed_accuracy(records: Records, x: str = "milliseconds", y: str = "relmse",
         ax.margins(0.12)
         best = front[(front[VIEW] == list(view)).all(axis=1) & (front[x] > 0) & ((front[y] > 0) | (y == MERIT))]
         ax.scatter(best[x], best[y], s=110, facecolors="none", edgecolors=theme_of(dark)["ink"], linewidths=0.8, zorder=4)
+        for method, points in rows.groupby("method", sort=False):
+            _draw_intervals(ax, points, x, y, styles[str(method)][0])
         _name_points(ax, best.head(NAMED_POINTS), x, y, varied(records), dark)
         _noise_band(ax, rows, y, dark)
         _few_ticks(ax, y != MERIT)
@@ -172,6 +175,21 @@ def _rows(bars: Sequence[int], dark: bool) -> tuple[Figure, list[Axes]]:
 def _styles(methods: pd.Series[Any]) -> dict[str, tuple[str, str]]:
     names = [str(name) for name in methods.unique()]
     return {name: (COLOURS[i % len(COLOURS)], MARKERS[i % len(MARKERS)]) for i, name in enumerate(names)}
+
+
+def _above_zero(rows: pd.DataFrame, y: str) -> pd.DataFrame:
+    """Errors that vanish when the truth's noise is subtracted are drawn at half that noise: a logarithm has no 0."""
+    return rows.assign(**{y: rows[y].where(rows[y] > 0, rows[NOISE_OF[y]] / 2)}) if y in NOISE_OF else rows
+
+
+def _draw_intervals(ax: Axes, points: pd.DataFrame, x: str, y: str, colour: str) -> None:
+    """Thin lines along both axes where the intervals are known."""
+    for column, name in ((x, "xerr"), (y, "yerr")):
+        if f"{column}_low" in points:
+            reach = np.array([points[column] - points[f"{column}_low"], points[f"{column}_high"] - points[column]], float)
+            reach[0] = np.minimum(reach[0], 0.9 * points[column].abs())  # a logarithm ends above 0
+            spread: Any = {name: np.nan_to_num(np.maximum(reach, 0))}
+            ax.errorbar(points[x], points[y], fmt="none", ecolor=colour, elinewidth=0.7, alpha=0.6, zorder=2, **spread)
 
 
 def _own_front(points: pd.DataFrame, x: str, y: str) -> pd.DataFrame:

@@ -1,51 +1,27 @@
 """Rankings: which configurations are worth having? All read records only.
 
-A configuration is a method with its knobs; its seeds are averaged. Rankings are per scene, camera and bounces. The truth has
-noise of its own: errors that do not exceed it, or that differ by no more than it, are not ranked: the column `note` says
-"within noise".
+A configuration (`study/configurations.py`) is a method with its knobs; its seeds are averaged, with intervals on both axes. Rankings
+are per scene, camera and bounces. Errors that do not exceed the truth's noise, or that differ by no more than it or than their
+intervals, are not ranked: the column `note` says "within noise".
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from interreflect.study.records import METRICS, OK, Records
+from interreflect.study.configurations import COSTS, ERRORS, MERIT, NOISE_OF, VIEW, WORK, configurations
+from interreflect.study.records import Records
 
 if TYPE_CHECKING:
     import pandas as pd
 
-VIEW = ["scene", "camera", "bounces"]
-COSTS = ("milliseconds", "milliseconds_p95", "precompute_milliseconds")
-NOISE_OF = {  # an error that the truth's noise bounds -> the column that holds that noise
-    "relmse": "noise",
-    "trimmed_relmse": "noise",
-    "indirect_relmse": "indirect_noise",
-    "indirect_trimmed_relmse": "indirect_noise",
-}
-ERRORS = (*NOISE_OF, "flip")
-MERIT = "ssim"  # better where larger
+TIMES = ("milliseconds", "milliseconds_p95", "precompute_milliseconds")
 WITHIN_NOISE = "within noise"
 REFERENCE_POINT = (1e4, 1.0)  # 10 s a frame and an error of 1: what no front is worth beyond; fixed, so that areas compare
 TINY = 1e-12  # an error of 0 has no logarithm
-PER_SEED = ("seed", "status", "failure", "key")  # columns of cells that configurations do not have
-
-
-def configurations(records: Records) -> pd.DataFrame:
-    """A row per view and configuration: measured columns averaged over its seeds (the median of times), `seeds` their number.
-
-    Cells that failed or are not finite are left out, and so are configurations of which any seed did.
-    """
-    by = [*VIEW, "configuration"]
-    table = records.table.assign(configuration=[record.configuration for record in records])
-    failed = table.assign(failed=table["status"] != OK).groupby(by, sort=False)["failed"].transform("any")
-    kept = table[~failed.astype(bool)].drop(columns=list(PER_SEED))
-    measured = [name for name in kept.columns if name not in records.knob_columns and _is_measured(name)]
-    how = dict.fromkeys(kept.columns.difference(by, sort=False), "first")
-    how |= {name: "median" if "milliseconds" in name else "mean" for name in measured}
-    grouped = kept.astype(dict.fromkeys(measured, float)).groupby(by, sort=False)
-    return grouped.agg(how).assign(seeds=grouped.size()).reset_index()
 
 
 def pareto(records: Records, x: str = "milliseconds", y: str = "relmse") -> pd.DataFrame:
@@ -60,17 +36,17 @@ def pareto(records: Records, x: str = "milliseconds", y: str = "relmse") -> pd.D
     for view in _views(records, x, y):
         points = np.column_stack([_minimised(view, x), _minimised(view, y)])
         front = view[moocore.is_nondominated(points, keep_weakly=True)].sort_values([x, y], kind="stable")
-        fronts.append(_noted(front, y, _minimised(front, y).shift(1)))
+        fronts.append(_noted(front, y, front.shift(1)))
     return _joined(fronts, records)
 
 
 def cheapest(records: Records, **bound: float) -> pd.DataFrame:
-    """The fastest configuration whose error keeps within a bound, e.g. `relmse=.01`, per scene, camera and bounces.
+    """The fastest configuration whose errors keep within bounds, e.g. `relmse=.01, flip=.1`, per scene, camera and bounces.
 
     A view where none does has no row. `note` says "within noise" where the truth's noise exceeds the bound or the distance to it.
     """
-    y, limit = _bound("cheapest", bound, (*ERRORS, MERIT))
-    return _joined([_fastest(view, y, limit) for view in _views(records, "milliseconds", y)], records)
+    limits = _bounds("cheapest", bound)
+    return _joined([_fastest(view, limits) for view in _views(records, "milliseconds", *limits)], records)
 
 
 def best(records: Records, milliseconds: float, y: str = "relmse") -> pd.DataFrame:
@@ -87,16 +63,16 @@ def equal_time(records: Records, milliseconds: float, y: str = "relmse") -> pd.D
     for view in _views(records, "milliseconds", y):
         ranked = _stacked([_most_accurate(group, milliseconds, y) for _, group in view.groupby("method", sort=False)], view)
         ranked = ranked.sort_values(y, ascending=y != MERIT, kind="stable")
-        picked.append(_noted(ranked, y, _minimised(ranked, y).shift(-1)))
+        picked.append(_noted(ranked, y, ranked.shift(-1)))
     return _joined(picked, records)
 
 
 def equal_error(records: Records, **bound: float) -> pd.DataFrame:
-    """Every method's fastest configuration within an error bound, per scene, camera and bounces, fastest first."""
-    y, limit = _bound("equal_error", bound, (*ERRORS, MERIT))
+    """Every method's fastest configuration within error bounds, per scene, camera and bounces, fastest first."""
+    limits = _bounds("equal_error", bound)
     picked = []
-    for view in _views(records, "milliseconds", y):
-        ranked = _stacked([_fastest(group, y, limit) for _, group in view.groupby("method", sort=False)], view)
+    for view in _views(records, "milliseconds", *limits):
+        ranked = _stacked([_fastest(group, limits) for _, group in view.groupby("method", sort=False)], view)
         picked.append(ranked.sort_values("milliseconds", kind="stable"))
     return _joined(picked, records)
 
@@ -110,8 +86,8 @@ def hypervolume(records: Records, x: str = "milliseconds", y: str = "relmse") ->
     import moocore
     import pandas as pd
 
-    if x not in COSTS or y not in ERRORS:
-        raise ValueError(f"hypervolume needs a time ({', '.join(COSTS)}) and an error ({', '.join(ERRORS)}), got {x!r} and {y!r}")
+    if x not in TIMES or y not in ERRORS:
+        raise ValueError(f"hypervolume needs a time ({', '.join(TIMES)}) and an error ({', '.join(ERRORS)}), got {x!r} and {y!r}")
     rows = []
     for view in _views(records, x, y):
         for method, group in view.groupby("method", sort=False):
@@ -122,50 +98,99 @@ def hypervolume(records: Records, x: str = "milliseconds", y: str = "relmse") ->
     return pd.DataFrame(rows, columns=[*VIEW, "method", "hypervolume"])
 
 
-def _fastest(view: pd.DataFrame, y: str, limit: float) -> pd.DataFrame:
-    within = view[_minimised(view, y) <= (-limit if y == MERIT else limit)]
-    row = within.sort_values(["milliseconds", y], kind="stable").head(1)
-    return _noted(row, y, limit + 0 * _minimised(row, y)) if y in NOISE_OF else _noted(row, y, None)
+def knee(records: Records, x: str = "milliseconds", y: str = "relmse") -> pd.DataFrame:
+    """Where a front bends most, per scene, camera and bounces: beyond it little accuracy is bought with much time.
+
+    The point farthest below the line between the front's ends, both axes logarithmic and scaled to the front [Das 1999]. Views whose
+    front has no point below that line have no row. ValueError unless `x` is a cost and `y` an error.
+    """
+    if (x not in COSTS and not x.startswith(WORK)) or y not in ERRORS:
+        raise ValueError(f"a knee needs a cost and an error ({', '.join(ERRORS)}), got {x!r} and {y!r}")
+    fronts, picked = pareto(records, x, y), []
+    for _, front in fronts.groupby(VIEW, sort=False, dropna=False):
+        points = np.log10(np.maximum(front[[x, y]].to_numpy(float), TINY))
+        span = np.ptp(points, axis=0)
+        if len(front) > 2 and (span > 0).all():
+            across = ((points - points.min(axis=0)) / span).sum(axis=1)  # 1 on the line between the ends
+            if across.min() < 1:
+                picked.append(front.iloc[[int(np.argmin(across))]])
+    return _joined(picked, records)
+
+
+def inefficiency(records: Records, x: str = "milliseconds", y: str = "relmse") -> pd.DataFrame:
+    """Error times time of every configuration, least first, per scene, camera and bounces, with its interval.
+
+    Of unbiased estimates it does not change with the samples: half the error for twice the time. ValueError for columns that do not
+    rank, or are not a cost and an error.
+    """
+    if (x not in COSTS and not x.startswith(WORK)) or y not in ERRORS:
+        raise ValueError(f"inefficiency needs a cost and an error ({', '.join(ERRORS)}), got {x!r} and {y!r}")
+    ranked = []
+    for view in _views(records, x, y):
+        spread = [_half_width(view, column) / view[column].abs().clip(lower=TINY) for column in (x, y)]
+        product, relative = view[x] * view[y], np.hypot(*spread)
+        low, high = (product * np.exp(sign * relative) for sign in (-1, 1))
+        order = view.assign(inefficiency=product, inefficiency_low=low, inefficiency_high=high).sort_values("inefficiency", kind="stable")
+        ranked.append(_noted(order, y, order.head(0).reindex(order.index)))
+    return _joined(ranked, records)
+
+
+def _fastest(view: pd.DataFrame, limits: Mapping[str, float]) -> pd.DataFrame:
+    within = view
+    for y, limit in limits.items():
+        within = within[_minimised(within, y) <= (-limit if y == MERIT else limit)]
+    first = next(iter(limits))
+    row = within.sort_values(["milliseconds", first], kind="stable").head(1).assign(note="")
+    for y, limit in limits.items():
+        if y in NOISE_OF and ((limit <= row[NOISE_OF[y]]) | ((limit - row[y]).abs() <= row[NOISE_OF[y]])).any():
+            row = row.assign(note=WITHIN_NOISE)
+    return row
 
 
 def _most_accurate(view: pd.DataFrame, milliseconds: float, y: str) -> pd.DataFrame:
     within = view[view["milliseconds"] <= milliseconds]
     ranked = within.sort_values([y, "milliseconds"], ascending=[y != MERIT, True], kind="stable").head(2)
-    return _noted(ranked, y, _minimised(ranked, y).shift(-1)).head(1)
+    return _noted(ranked, y, ranked.shift(-1)).head(1)
 
 
-def _noted(rows: pd.DataFrame, y: str, rival: Any) -> pd.DataFrame:
-    """`rows` with the column `note`; rival: the error that each row's is ranked against, NaN where there is none."""
-    rows = rows.copy()
-    rows["note"] = ""
+def _noted(rows: pd.DataFrame, y: str, rivals: pd.DataFrame) -> pd.DataFrame:
+    """`rows` with the column `note`; rivals: the row that each is ranked against, NaN where there is none."""
+    distance = (_minimised(rows, y) - _minimised(rivals, y)).abs()
+    reach = np.hypot(_half_width(rows, y), _half_width(rivals, y))
+    unresolved = distance <= reach
     if y in NOISE_OF:
-        noise, error = rows[NOISE_OF[y]], rows[y]
-        unresolved = (error <= noise) | ((rival - error).abs() <= noise)
-        rows.loc[unresolved, "note"] = WITHIN_NOISE
-    return rows
+        unresolved |= (rows[y] <= rows[NOISE_OF[y]]) | (distance <= rows[NOISE_OF[y]])
+    return rows.assign(note=np.where(unresolved, WITHIN_NOISE, ""))
 
 
-def _views(records: Records, x: str, y: str) -> list[pd.DataFrame]:
-    for column, allowed in ((x, (*COSTS, *ERRORS, MERIT)), (y, (*COSTS, *ERRORS, MERIT))):
-        if column not in allowed:
-            raise ValueError(f"rankings need one of {', '.join(allowed)}, got {column!r}")
+def _half_width(rows: pd.DataFrame, y: str) -> Any:
+    """Of the interval; 0 where one seed gave none."""
+    return ((rows[f"{y}_high"] - rows[f"{y}_low"]) / 2).fillna(0.0) if f"{y}_low" in rows else 0.0 * rows[y]
+
+
+def _views(records: Records, *columns: str) -> list[pd.DataFrame]:
+    for column in columns:
+        if column not in (*COSTS, *ERRORS, MERIT) and not column.startswith(WORK):
+            raise ValueError(f"rankings need one of {', '.join((*COSTS, *ERRORS, MERIT, WORK + '<count>'))}, got {column!r}")
     table = configurations(records)
-    table = table[np.isfinite(table[x].astype(float)) & np.isfinite(table[y].astype(float))]
+    for column in columns:
+        if column not in table:
+            raise ValueError(
+                f"no record has {column!r}; work that was counted: {', '.join(str(c) for c in table if str(c).startswith(WORK))}"
+            )
+        table = table[np.isfinite(table[column].astype(float))]
     return [view for _, view in table.groupby(VIEW, sort=False, dropna=False)]
 
 
-def _bound(function: str, bound: dict[str, float], allowed: tuple[str, ...]) -> tuple[str, float]:
-    if len(bound) != 1 or not set(bound) <= set(allowed):
-        raise TypeError(f"{function} takes one bound, one of {', '.join(allowed)}, got {sorted(bound)}")
-    return next(iter(bound.items()))
+def _bounds(function: str, given: dict[str, float]) -> dict[str, float]:
+    allowed = (*ERRORS, MERIT)
+    if not given or not set(given) <= set(allowed):
+        raise TypeError(f"{function} takes bounds of {', '.join(allowed)}, got {sorted(given)}")
+    return given
 
 
 def _minimised(rows: pd.DataFrame, column: str) -> Any:
     return -rows[column] if column == MERIT else rows[column]
-
-
-def _is_measured(column: str) -> bool:
-    return column.startswith("stage.") or column in (*COSTS, *METRICS, "noise", "indirect_noise")
 
 
 def _stacked(parts: list[pd.DataFrame], like: pd.DataFrame) -> pd.DataFrame:

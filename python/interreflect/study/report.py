@@ -14,9 +14,10 @@ import numpy as np
 import numpy.typing as npt
 
 from interreflect import charts, metrics
+from interreflect.study.configurations import VIEW, configurations
 from interreflect.study.files import replacing
 from interreflect.study.page import PAGE
-from interreflect.study.pareto import VIEW, configurations, equal_error, hypervolume, pareto
+from interreflect.study.pareto import equal_error, hypervolume, pareto
 from interreflect.study.records import OK, Record, Records
 
 if TYPE_CHECKING:
