@@ -22,7 +22,7 @@ struct PathTracingSettings {
     std::optional<double> milliseconds;       // instead: passes of one path until so much time has gone by; at least one
     std::optional<int> bounces = 1;           // most indirect bounces; 0: direct light only; none: all, by roulette
     PixelFilter pixel = PixelFilter::centre;  // centre: the G-buffer's point with its filtered texture; box: the pixel's mean
-    int pattern = 8;  // within a tile, pixels at equal places of an n x n pattern share their random numbers
+    int pattern = 8;  // in blocks of 4 n pixels, pixels at equal places of an n x n pattern share their random numbers
     std::uint32_t seed = 0;
 };
 

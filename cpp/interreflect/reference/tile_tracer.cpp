@@ -9,7 +9,7 @@
 namespace interreflect {
 namespace {
 
-constexpr int first_roulette = 2;  // vertex
+constexpr int first_roulette = 1;  // vertex
 constexpr float infinity = std::numeric_limits<float>::infinity();
 constexpr std::uint32_t none = ~0U;
 
@@ -41,19 +41,30 @@ std::uint32_t fill_packet(const Rays& rays, std::uint32_t first, RayPacket& pack
 
 TileTracer::TileTracer(const Integrand& integrand)
     : in_(integrand), at_(std::make_unique<Workspace>()), paths_(&at_->vertices[0]), next_(&at_->vertices[1]) {
-    pattern_of_pixel_.resize(tracing_tile_pixels);
-    const auto n = static_cast<std::uint32_t>(in_.pattern);
-    for (std::uint32_t i = 0; i < tracing_tile_pixels; ++i)
-        pattern_of_pixel_[i] = morton(i % tracing_tile % n, i / tracing_tile % n);
+    make_patterns(static_cast<std::uint32_t>(in_.pattern));
     for (std::uint32_t i = 0; i < tracing_tile_pixels; ++i) whole_by_block_.push_back(i);
     whole_by_pattern_ = whole_by_block_;
-    const auto block = [](std::uint32_t i) { return morton(i % tracing_tile, i / tracing_tile); };
-    const auto place = [&](std::uint32_t i) {
-        return static_cast<std::uint64_t>(pattern_of_pixel_[i]) << 32 | morton(i % tracing_tile / n, i / tracing_tile / n);
-    };
-    std::sort(whole_by_block_.begin(), whole_by_block_.end(), [&](auto i, auto j) { return block(i) < block(j); });
-    std::sort(whole_by_pattern_.begin(), whole_by_pattern_.end(), [&](auto i, auto j) { return place(i) < place(j); });
-    patterns_ = *std::max_element(pattern_of_pixel_.begin(), pattern_of_pixel_.end()) + 1;
+    const auto place = [](std::uint32_t i) { return morton(i % tracing_tile, i / tracing_tile); };
+    const auto by_place = [&](auto i, auto j) { return place(i) < place(j); };
+    std::sort(whole_by_block_.begin(), whole_by_block_.end(), by_place);
+    std::sort(whole_by_pattern_.begin(), whole_by_pattern_.end(), by_place);
+    std::stable_sort(whole_by_pattern_.begin(), whole_by_pattern_.end(),
+                     [&](auto i, auto j) { return pattern_of_pixel_[i] < pattern_of_pixel_[j]; });
+}
+
+/// Pixels share their pattern with those at equal places of an n x n grid, within blocks of 4 n pixels: one packet of rays.
+void TileTracer::make_patterns(std::uint32_t n) {
+    std::vector<std::uint32_t> keys;
+    for (std::uint32_t i = 0; i < tracing_tile_pixels; ++i) {
+        const std::uint32_t x = i % tracing_tile, y = i / tracing_tile;
+        keys.push_back(morton(x / (4 * n), y / (4 * n)) << 16 | morton(x % n, y % n));
+    }
+    std::vector<std::uint32_t> all = keys;
+    std::sort(all.begin(), all.end());
+    all.erase(std::unique(all.begin(), all.end()), all.end());
+    patterns_ = static_cast<std::uint32_t>(all.size());
+    for (const auto key : keys)
+        pattern_of_pixel_.push_back(static_cast<std::uint32_t>(std::lower_bound(all.begin(), all.end(), key) - all.begin()));
 }
 
 /// The pixels of a whole tile in their orders, without what lies beyond the picture's border.
@@ -103,7 +114,7 @@ void TileTracer::trace(const Tile& tile, int first, int end) {
         load_places(first);
         trace_primary(tile, certain_);
         if (first == 0)
-            add_delta_lights(at_->first, true, certain_);
+            add_delta_lights(at_->first, certain_);
         else
             certain_.assign(tracing_tile_pixels, vec3(0));
     }
@@ -111,7 +122,7 @@ void TileTracer::trace(const Tile& tile, int first, int end) {
         if (!repeats()) {
             load_places(sample);
             trace_primary(tile, direct_);
-            add_delta_lights(at_->first, true, direct_);
+            add_delta_lights(at_->first, direct_);
         }
         trace_sample(sample);
     }
@@ -193,7 +204,7 @@ void TileTracer::trace_sample(int sample) {
     reorder_paths(at_->first, at_->order, count, *paths_);
     for (int vertex = 0; paths_->count != 0; ++vertex) {
         load_pairs(vertex, sample);
-        if (vertex > 0) add_delta_lights(*paths_, false, image(vertex));
+        if (vertex > 0) add_delta_lights(*paths_, image(vertex));
         if (in_.lights.has_emitters()) add_emitters(vertex);
         if (in_.lights.has_environment()) add_environment(vertex);
         take_steps(vertex);
@@ -209,8 +220,7 @@ Connecting TileTracer::connecting(const PathLanes& paths, int vertex, bool weigh
     return {paths, in_.scene.materials, weighed, continue_all(vertex), at_->shadows};
 }
 
-void TileTracer::trace_shadows(bool coherent, std::vector<vec3>& to) {
-    (void)coherent;
+void TileTracer::trace_shadows(std::vector<vec3>& to) {
     ShadowLanes& shadows = at_->shadows;
     counts_.shadow_rays += shadows.count;
     RayPacket& packet = at_->rays[0];
@@ -225,7 +235,7 @@ void TileTracer::trace_shadows(bool coherent, std::vector<vec3>& to) {
     shadows.count = 0;
 }
 
-void TileTracer::add_delta_lights(const PathLanes& paths, bool coherent, std::vector<vec3>& to) {
+void TileTracer::add_delta_lights(const PathLanes& paths, std::vector<vec3>& to) {
     const Connecting c = connecting(paths, 0, false);
     for (int number = 0; number < in_.lights.delta_count(); ++number) {
         if (in_.lights.delta_is_directional(number)) {
@@ -240,7 +250,7 @@ void TileTracer::add_delta_lights(const PathLanes& paths, bool coherent, std::ve
             }
             connect_given(c, at_->lights);
         }
-        trace_shadows(coherent, to);
+        trace_shadows(to);
     }
 }
 
@@ -257,7 +267,7 @@ void TileTracer::add_emitters(int vertex) {
         }
         connect_given(c, at_->lights);
     }
-    trace_shadows(false, image(vertex));
+    trace_shadows(image(vertex));
 }
 
 void TileTracer::add_environment(int vertex) {
@@ -273,7 +283,7 @@ void TileTracer::add_environment(int vertex) {
         }
         connect_given(c, at_->lights);
     }
-    trace_shadows(false, image(vertex));
+    trace_shadows(image(vertex));
 }
 
 float TileTracer::environment_pdf(const vec3& normal, const vec3& direction) const {

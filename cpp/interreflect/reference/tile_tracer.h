@@ -63,6 +63,7 @@ class TileTracer {
         SurfacePacket surfaces[together];
     };
 
+    void make_patterns(std::uint32_t n);
     void make_orders(const Tile& tile);
     void load_pairs(int vertex, int sample);
     void load_places(int sample);
@@ -71,10 +72,10 @@ class TileTracer {
     bool repeats() const { return in_.pixel == PixelFilter::centre; }
     bool roulette_at(int vertex) const;
     Connecting connecting(const PathLanes& paths, int vertex, bool weighed);
-    void add_delta_lights(const PathLanes& paths, bool coherent, std::vector<vec3>& to);
+    void add_delta_lights(const PathLanes& paths, std::vector<vec3>& to);
     void add_emitters(int vertex);
     void add_environment(int vertex);
-    void trace_shadows(bool coherent, std::vector<vec3>& to);
+    void trace_shadows(std::vector<vec3>& to);
     bool continue_all(int vertex) const;
     template <class Meeting>
     void trace_steps(const StepLanes& steps, bool alone, const Meeting& meeting, PathLanes* paths);

@@ -26,7 +26,7 @@ class PathTracing(Method):
     bounces: int | None = knob(default=1, doc="indirect bounces; None: all", minimum=0, optional=True)
     pixel: str = knob(default="centre", doc="the pixel's centre, or its mean", choices=("centre", "box"))
     pattern: int = knob(
-        default=4, doc="pixels at equal places of an n x n pattern share their random numbers within a tile", minimum=1, maximum=32
+        default=4, doc="pixels at equal places of an n x n pattern share their random numbers in blocks of 4 n", minimum=1, maximum=32
     )
 
     def compose(self, view: View, profile: Profile) -> tuple[Image, Image]:
