@@ -28,7 +28,7 @@ def curves(played: Sequence[Played], dark: bool = False) -> Figure:
         left.plot(table.index, table["temporal_mean"], label=one.method, **style)
         left.plot(table.index, table["temporal_p99"], color=colour, linestyle="--", linewidth=0.9)
         right.plot(table.index, table["relmse"], **style)
-    noise = max(one.truth_mean for one in played)
+    noise = max(one.truth_jumps.mean for one in played)
     if noise > 0:
         left.axhline(noise, color=theme_of(dark)["faint"], linewidth=0.8, linestyle=":", label="the truth's own noise")
     for axes, label in ((left, "temporal error, share of mean radiance"), (right, "relMSE of the frame")):

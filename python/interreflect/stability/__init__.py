@@ -2,10 +2,11 @@
 
 from interreflect.stability.break_points import Atlas, atlas
 from interreflect.stability.failure import Failure, Reading
+from interreflect.stability.invariants import Invariance, invariance
 from interreflect.stability.moving_failures import MOVING
 from interreflect.stability.still_failures import STILL
 from interreflect.stability.temporal import Played, motion
 
 failures: tuple[Failure, ...] = (*STILL, *MOVING)
 
-__all__ = ["Atlas", "Failure", "Played", "Reading", "atlas", "failures", "motion"]
+__all__ = ["Atlas", "Failure", "Invariance", "Played", "Reading", "atlas", "failures", "invariance", "motion"]

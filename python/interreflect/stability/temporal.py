@@ -29,6 +29,37 @@ SAMPLES = Reference(noise=1e-3, max_spp=512)
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
+class Jumps:
+    """Temporal errors of surface points and their statistics, NaN where there are none."""
+
+    errors: Floats
+
+    @property
+    def mean(self) -> float:
+        return float(self.errors.mean()) if self.errors.size else float("nan")
+
+    @property
+    def p95(self) -> float:
+        return self._percentile(95)
+
+    @property
+    def p99(self) -> float:
+        return self._percentile(99)
+
+    @property
+    def max(self) -> float:
+        return self._percentile(100)
+
+    def _percentile(self, share: float) -> float:
+        return float(np.percentile(self.errors, share)) if self.errors.size else float("nan")
+
+
+def jumps_of(errors: Sequence[Floats]) -> Jumps:
+    """Those of all surface points that were seen before."""
+    return Jumps(np.concatenate([error[np.isfinite(error)] for error in errors] or [np.empty(0)]))
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
 class Played:
     """A method in motion, frame by frame, beside the truth of every frame.
 
@@ -53,43 +84,39 @@ class Played:
     pop: float
 
     @cached_property
-    def _jumps(self) -> Floats:
-        seen = [error[np.isfinite(error)] for error in self.errors]
-        return np.concatenate(seen) if seen else np.empty(0)
+    def jumps(self) -> Jumps:
+        """Temporal errors of all frames."""
+        return jumps_of(self.errors)
+
+    @cached_property
+    def truth_jumps(self) -> Jumps:
+        """Those that the truth's own noise makes: below them, `jumps` say nothing."""
+        return jumps_of(self.truth_errors)
 
     @property
     def mean(self) -> float:
-        return float(self._jumps.mean()) if self._jumps.size else float("nan")
+        return self.jumps.mean
 
     @property
     def p95(self) -> float:
-        return self._percentile(95)
+        return self.jumps.p95
 
     @property
     def p99(self) -> float:
-        return self._percentile(99)
+        return self.jumps.p99
 
     @property
     def max(self) -> float:
-        return self._percentile(100)
-
-    def _percentile(self, share: float) -> float:
-        return float(np.percentile(self._jumps, share)) if self._jumps.size else float("nan")
+        return self.jumps.max
 
     @property
     def pops(self) -> int:
-        return int((self._jumps > self.pop).sum())
+        return int((self.jumps.errors > self.pop).sum())
 
     @property
     def points(self) -> int:
         """Surface points compared, over all frames."""
-        return int(self._jumps.size)
-
-    @property
-    def truth_mean(self) -> float:
-        """Temporal error that the truth's own noise makes: below it, `mean` says nothing."""
-        noise = np.concatenate([error[np.isfinite(error)] for error in self.truth_errors] or [np.empty(0)])
-        return float(noise.mean()) if noise.size else float("nan")
+        return int(self.jumps.errors.size)
 
     @property
     def flicker(self) -> float:
@@ -117,14 +144,10 @@ class Played:
         return pd.DataFrame(rows).set_index("frame")
 
     def _jumps_of(self, frame: int) -> dict[str, float]:
-        error, noise = (e[frame - 1][np.isfinite(e[frame - 1])] for e in (self.errors, self.truth_errors))
-        if not error.size:
-            return {"points": 0}
-        p95, p99 = np.percentile(error, (95, 99))
+        jumps, noise = (jumps_of(errors[frame - 1 : frame]) for errors in (self.errors, self.truth_errors))
         return {
-            "temporal_mean": float(error.mean()), "temporal_p95": float(p95), "temporal_p99": float(p99),
-            "temporal_max": float(error.max()), "pops": int((error > self.pop).sum()),
-            "points": int(error.size), "truth_temporal_mean": float(noise.mean()),
+            "temporal_mean": jumps.mean, "temporal_p95": jumps.p95, "temporal_p99": jumps.p99, "temporal_max": jumps.max,
+            "pops": int((jumps.errors > self.pop).sum()), "points": int(jumps.errors.size), "truth_temporal_mean": noise.mean,
         }  # fmt: skip
 
     def chart(self, dark: bool = False) -> Figure:
@@ -142,7 +165,7 @@ class Played:
     def __repr__(self) -> str:
         words = f"temporal error mean {self.mean:.3g}, p95 {self.p95:.3g}, p99 {self.p99:.3g}, max {self.max:.3g}; {self.pops} pops"
         tail = f"; flicker {self.flicker:.3g}" if self.motion.is_still else ""
-        return f"<{self.method} on {self.scene}: {words} in {self.points} points; truth's own {self.truth_mean:.2g}{tail}>"
+        return f"<{self.method} on {self.scene}: {words} in {self.points} points; truth's own {self.truth_jumps.mean:.2g}{tail}>"
 
     def _repr_html_(self) -> str:
         from html import escape

@@ -21,7 +21,7 @@ PLACES = (0.0, 0.0047, 0.0083, 0.0129)  # extents: near 0, .3, .5 and .8 of a vo
 def leak(trial: Trial) -> Reading:
     """Mean radiance that the camera "dark" sees over that which "lit" sees; the truth is 0."""
     dark, lit = trial.render("dark"), trial.render("lit")
-    return Reading(_mean(dark.image) / _mean(lit.image), dark.image, np.zeros_like(dark.image))
+    return Reading(_share(dark.image, lit.image), dark.image, np.zeros_like(dark.image))
 
 
 def leak_on_body(trial: Trial, body: str) -> Reading:
@@ -29,7 +29,7 @@ def leak_on_body(trial: Trial, body: str) -> Reading:
     scene = trial.scene
     own = trace_gbuffer(scene, "dark", trial.size).body == list(scene.bodies).index(body)
     dark, lit = trial.render("dark"), trial.render("lit")
-    return Reading(_mean(dark.image[own]) / _mean(lit.image), dark.image, np.zeros_like(dark.image))
+    return Reading(_share(dark.image[own], lit.image), dark.image, np.zeros_like(dark.image))
 
 
 def occlusion(trial: Trial, blocker: str) -> Reading:
@@ -43,7 +43,7 @@ def occlusion(trial: Trial, blocker: str) -> Reading:
 def self_illumination(trial: Trial) -> Reading:
     """Indirect over direct light of a convex body, mean over four places within a voxel; the truth is 0."""
     frames = [trial.render(scene=lone_ball(radius=trial.value, shift=shift)) for shift in PLACES]
-    return Reading(float(np.mean([_mean(frame.indirect) / _mean(frame.direct) for frame in frames])), frames[0].indirect, frames[0].image)
+    return Reading(float(np.mean([_share(frame.indirect, frame.direct) for frame in frames])), frames[0].indirect, frames[0].image)
 
 
 def false_shadow(trial: Trial) -> Reading:
@@ -71,3 +71,8 @@ def penumbra_error(trial: Trial) -> Reading:
 
 def _mean(image: NDArray[np.floating]) -> float:
     return float(np.mean(image, dtype=np.float64))
+
+
+def _share(part: NDArray[np.floating], whole: NDArray[np.floating]) -> float:
+    """Mean over mean; infinite where the whole, which must be lit, is black."""
+    return _mean(part) / _mean(whole) if _mean(whole) > 0 else float("inf")

@@ -24,7 +24,7 @@ def temporal(step: Callable[[float], Motion], statistic: str) -> Callable[[Trial
     def measure(trial: Trial) -> Reading:
         moving = dataclasses.replace(step(trial.value), camera=trial.camera)
         played = motion(trial.method, trial.scene, moving, trial.size, trial.seed, trial.threads, TRUTH)
-        return Reading(getattr(played, statistic), played.images[-1], played.truths[-1], floor=played.truth_mean)
+        return Reading(getattr(played, statistic), played.images[-1], played.truths[-1], floor=getattr(played.truth_jumps, statistic))
 
     return measure
 
