@@ -8,6 +8,7 @@
 #include "direct/pixel_tiles.h"
 #include "math/stratified.h"
 #include "shading/brdf.h"
+#include "shading/emitter_batch.h"
 
 namespace interreflect {
 namespace {
@@ -98,10 +99,9 @@ void trace_directional_light(const LightSampler::Delta& sun, const Tile& tile, S
     });
 }
 
-/// The i-th point on an emitter, weighted against the lobe's own samples where there are such.
-void add_light_sample(Pending& pending, const PixelSurface& surface, std::size_t pixel, const StratifiedPoints& points, int i,
-                      int samples, const LightSampler& lights) {
-    const auto light = lights.sample_emitter(surface.point.position, points.choice(i), points.point(i));
+/// A point on an emitter, weighted against the lobe's own samples where there are such.
+void add_light_sample(Pending& pending, const PixelSurface& surface, std::size_t pixel, const LightDirection& light,
+                      int samples) {
     if (!(light.pdf > 0.0f)) return;
     const BrdfValue f = evaluate_brdf_and_pdf(surface.point, surface.to_viewer, light.direction);
     const float density = light.pdf + (surface.glossy() ? f.pdf : 0.0f);
@@ -131,16 +131,28 @@ void add_emitters(DirectLight& light, int samples, const Scene& scene, const Int
     std::vector<Counts> counts(tile_count(g));
     for_each_tile(g, [&](const TilePixels& pixels) {
         Pending pending;
+        EmitterBatch batch;
+        std::array<std::size_t, EmitterBatch::width> pixel_of;
+        const auto finish = [&] {
+            sample_emitters(lights, batch);
+            for (int k = 0; k < batch.count; ++k)
+                add_light_sample(pending, PixelSurface(g, scene, pixel_of[k]), pixel_of[k], batch.light[k], samples);
+            batch.count = 0;
+        };
         for (int i = 0; i < samples; ++i) {
             for (const std::size_t pixel : pixels) {
                 const PixelSurface surface(g, scene, pixel);
                 if (!surface.reflects()) continue;
                 const auto key = static_cast<std::uint32_t>(pixel);
-                add_light_sample(pending, surface, pixel, {seed, key, 0}, i, samples, lights);
+                const StratifiedPoints points(seed, key, 0);
+                pixel_of[batch.count] = pixel;
+                batch.add(surface.point.position, points.choice(i), points.point(i));
+                if (batch.count == EmitterBatch::width) finish();
                 if (!surface.glossy()) continue;
                 light.radiance[pixel] += brdf_sample(surface, {seed, key, 1}, i, samples, scene, intersector, lights);
                 ++counts[pixels.tile()].rays;
             }
+            finish();
             counts[pixels.tile()].shadow_rays += pending.count;
             pending.flush(light, [&](auto queries, auto blocked) { intersector.occluded_incoherent(queries, blocked); });
         }
