@@ -681,6 +681,25 @@ class TracedLighting:
     @property
     def both_sides(self) -> bool:
         ...
+class OctantCoverage:
+    """Surface coverage, with the colour that is seen along each of eight directions."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self) -> None:
+        ...
+
+    def replace(self) -> OctantCoverage:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
 class Anisotropic:
     """Six faces, each composited front to back along its direction, then averaged."""
     description: ClassVar[dict[str, Any]]
@@ -1007,7 +1026,7 @@ def place(grid: Grid, scene: Scene, camera: Camera | None=None) -> Domain:
     """
     The domain of a grid over the scene's bounds.
     """
-def prefilter(technique: VolumeCoverage | SurfaceCoverage | Anisotropic, lit: LitVoxels) -> Pyramid:
+def prefilter(technique: VolumeCoverage | SurfaceCoverage | Anisotropic | OctantCoverage, lit: LitVoxels) -> Pyramid:
     """
     Radiance and opacity of ever larger voxels.
     """

@@ -34,7 +34,7 @@ ConeBatch random_cones(const Pyramid& pyramid, int count) {
     batch.count = count;
     for (int i = 0; i < count; ++i) {
         const vec3 at = vec3(rng.uniform(), rng.uniform(), rng.uniform()) * vec3(pyramid.domain.cells);
-        set_start(batch, i, at, {0, 0, 1}, 0.0f, true);
+        set_start(batch, i, pyramid.domain, at, {0, 0, 1}, 0.0f, true);
         set_direction(batch, i, {0, 0, 1}, uniform_sphere({rng.uniform(), rng.uniform()}));
     }
     return batch;
@@ -115,7 +115,7 @@ TEST(Cones, FogBlocksByItsDepthWhateverTheStep) {
     for (const float step : {0.25f, 0.5f, 1.0f}) {
         ConeBatch batch{};
         batch.count = 1;
-        set_start(batch, 0, {32, 32, 32}, {0, 0, 1}, 0.0f, true);
+        set_start(batch, 0, pyramid.domain, {32, 32, 32}, {0, 0, 1}, 0.0f, true);
         set_direction(batch, 0, {0, 0, 1}, {1, 0, 0});
         march_cones(pyramid, make_schedule({0.0f, 1.0f, step, 0.0f, 1.0f}, pyramid), 0.0f, batch);
         EXPECT_NEAR(std::log(batch.open[0]) / std::log(1.0f - a), 33.0f, 1.0f) << step;

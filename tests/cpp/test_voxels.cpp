@@ -43,7 +43,8 @@ TEST(Pyramid, BordersRepeatTheNearestInnerTexelAtEveryLevelAndFace) {
     for (const ivec3& cells : {ivec3(8, 8, 8), ivec3(7, 3, 5), ivec3(1, 9, 2), ivec3(1, 1, 1)}) {
         const LitVoxels lit = make_lit(cells, some);
         for (const Pyramid& pyramid :
-             {prefilter(SurfaceCoverage{}, lit), prefilter(VolumeCoverage{}, lit), prefilter(Anisotropic{}, lit)})
+             {prefilter(SurfaceCoverage{}, lit), prefilter(VolumeCoverage{}, lit), prefilter(Anisotropic{}, lit),
+              prefilter(OctantCoverage{}, lit)})
             for (const auto& level : pyramid.levels)
                 for (int face = 0; face < level.faces; ++face)
                     for (int z = -1; z <= level.size.z; ++z)

@@ -32,13 +32,21 @@ struct Domain {
     bool operator==(const Domain&) const = default;
 };
 
-/// A point of a voxel's surface where its light is gathered: it lies on a triangle, so rays leave it as they leave a hit.
+/// A point of a voxel's surface where the light of one of its sides is gathered: it lies on a triangle, so rays leave it as they
+/// leave a hit.
 struct VoxelPoint {
-    vec3 position;       // world space
-    float offset;        // rays start at position + offset * (geometric normal of the side they leave to)
-    vec3 normal;         // unit geometric normal, on the front (winding) side
-    std::uint32_t back;  // 1: the surface reflects on its back too
+    vec3 position;           // world space
+    float offset;            // rays start at position + offset * normal
+    vec3 normal;             // unit geometric normal, on the side that is lit
+    std::uint32_t reflects;  // 0: this side of the voxel reflects nothing
 };
+
+/// Whether a surface faces an eye that looks along an octant of directions: bits 1, 2, 4 where x, y, z are above 0.
+inline bool faces_octant(const vec3& normal, unsigned octant) {
+    return ((octant & 1U) != 0 ? normal.x : -normal.x) + ((octant & 2U) != 0 ? normal.y : -normal.y) +
+               ((octant & 4U) != 0 ? normal.z : -normal.z) <=
+           0.0f;
+}
 
 /// The voxels that the surface passes through, in ascending order of their cell, in parallel arrays.
 struct VoxelGrid {
@@ -49,11 +57,14 @@ struct VoxelGrid {
     Buffer<vec3> emission;       // mean radiance leaving the front side; apart from `albedo` and never marched by default
     Buffer<vec3> position;       // mean of the solid samples, world space
     Buffer<float> opacity;       // share of samples that are solid: 1 but for masks
-    Buffer<VoxelPoint> points;   // where voxel i is lit: points[i]
+    Buffer<VoxelPoint> points;   // where the front of voxel i is lit: points[i]
+    Buffer<VoxelPoint> backs;    // and its back: the same surface's, or another one that faces away, as a slab's underside
     Counts counts;
 
     std::size_t size() const { return cell.size(); }
-    std::size_t bytes() const { return size() * (sizeof(std::uint32_t) + 4 * sizeof(vec3) + sizeof(float) + sizeof(VoxelPoint)); }
+    std::size_t bytes() const {
+        return size() * (sizeof(std::uint32_t) + 4 * sizeof(vec3) + sizeof(float) + 2 * sizeof(VoxelPoint));
+    }
 };
 
 /// Reflected radiance (of direct light only, emission apart) of each voxel's surface, W/(m^2 sr).
@@ -78,9 +89,10 @@ struct LitVoxels {
 /// index(b), index(b + y), index(b + z) and index(b + y + z). Valid wherever -0.5 <= q < size + 0.5, so nothing must be clamped
 /// inside the domain or within half a finest voxel of it.
 ///
-/// `faces` of a level is 1, or 6: volumes one after the other, for what is seen through the texel's faces -x +x -y +y -z +z from
-/// outside. Light that travels to an eye looking along d is read from face 0 where d.x > 0 and 1 where d.x < 0 (the eye looks at
-/// the side that faces it), and so on; blend the three by d * d. The finest level always has one.
+/// `faces` of a level is the number of its volumes, one after the other: 1; 6, for what is seen through the texel's faces
+/// -x +x -y +y -z +z from outside; or 8, for what is seen along the octants of directions. Of six, an eye looking along d reads
+/// face 0 where d.x > 0 and 1 where d.x < 0 (it looks at the side that faces it), and so on; it blends the three by d * d. Of
+/// eight it reads number (d.x > 0) + 2 (d.y > 0) + 4 (d.z > 0); their opacities agree. The finest level has one or eight.
 struct Pyramid {
     struct Level {
         ivec3 size{0};
@@ -97,7 +109,7 @@ struct Pyramid {
         }
     };
     Domain domain;
-    int faces = 1;       // 1, or 6: of every level but the finest
+    int faces = 1;       // of every level but the finest
     float scale = 1.0f;  // radiance = texel * scale: a power of two that keeps every radiance within half floats
     std::vector<Level> levels;
     std::shared_ptr<const LitVoxels> lit;  // what it was made from, both sides of every voxel; null: unknown

@@ -22,8 +22,8 @@ class VoxelConeTracing(Method):
 
     grid: _core.Grid = _core.Grid(resolution=128)
     voxelize: Any = stage(default=_core.SurfaceSampling())
-    light_voxels: Any = stage(default=_core.TracedLighting())
-    prefilter: Any = stage(default=_core.SurfaceCoverage())
+    light_voxels: Any = stage(default=_core.TracedLighting(both_sides=True))
+    prefilter: Any = stage(default=_core.OctantCoverage())
     march: Any = stage(default=_core.DiffuseCones())
     glossy: Any = stage(default=_core.GlossyCone(), optional=True)
     share: Any = stage(default=_core.Interleaved(width=4, height=4))

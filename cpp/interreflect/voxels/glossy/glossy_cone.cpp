@@ -62,7 +62,7 @@ Counts march_width(const Work& work, std::span<const Reflection> cones, ConeBatc
     batch.count = static_cast<int>(cones.size());
     for (int i = 0; i < batch.count; ++i) {
         const vec3 normal = work.gbuffer.geometric_normal[cones[i].pixel];
-        set_start(batch, i, cones[i].surface, normal, work.normal_offset, work.own_surface);
+        set_start(batch, i, work.pyramid.domain, cones[i].surface, normal, work.normal_offset, work.own_surface);
         set_direction(batch, i, normal, cones[i].direction);
     }
     const ConeCounts done = march_cones(work.pyramid, work.schedules[cones.front().width], work.cut_off, batch);

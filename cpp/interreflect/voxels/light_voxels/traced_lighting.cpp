@@ -96,18 +96,18 @@ class Lighting {
   private:
     /// Queues a ray towards a light that would bring `irradiance` to a surface facing it; nothing where the side that faces it is
     /// not lit.
-    void queue(std::size_t k, const vec3& direction, float distance, const vec3& irradiance) {
-        const VoxelPoint& point = grid_.points[order_[k]];
+    void queue(std::size_t k, unsigned side, const vec3& direction, float distance, const vec3& irradiance) {
+        const VoxelPoint& point = at(k, side);
         const float cosine = glm::dot(point.normal, direction);
-        if (cosine == 0.0f || !(max_component(irradiance) > 0.0f)) return;
-        const bool back = cosine < 0.0f;
-        if (back && (!technique_.both_sides || point.back == 0)) return;
-        const vec3 origin = point.position + point.normal * (back ? -point.offset : point.offset);
+        if (!(cosine > 0.0f) || point.reflects == 0 || !(max_component(irradiance) > 0.0f)) return;
         // Rays end short of an emitter by more than rounding and the offset move either end: it must not shadow its own light.
-        batch_.rays.push_back({origin, 0.0f, direction, distance * 0.9999f - 2.0f * point.offset});
-        batch_.irradiance.push_back(irradiance * std::fabs(cosine));
-        batch_.target.push_back(static_cast<std::uint32_t>(2 * k) + (back ? 1U : 0U));
+        batch_.rays.push_back(
+            {point.position + point.normal * point.offset, 0.0f, direction, distance * 0.9999f - 2.0f * point.offset});
+        batch_.irradiance.push_back(irradiance * cosine);
+        batch_.target.push_back(static_cast<std::uint32_t>(2 * k) + side);
     }
+    const VoxelPoint& at(std::size_t k, unsigned side) const { return (side == 0 ? grid_.points : grid_.backs)[order_[k]]; }
+    unsigned sides() const { return technique_.both_sides ? 2 : 1; }
     void trace(bool coherent) {
         if (oneapi::tbb::is_current_task_group_canceling()) throw Cancelled();  // thousands of samples take long
         batch_.blocked.resize(batch_.rays.size());
@@ -123,8 +123,10 @@ class Lighting {
 
     void delta(int light) {
         for (std::size_t k = 0; k < order_.size(); ++k) {
-            const auto d = lights_.delta(light, grid_.points[order_[k]].position);
-            queue(k, d.direction, d.distance, d.irradiance);
+            for (unsigned side = 0; side < sides(); ++side) {
+                const auto d = lights_.delta(light, at(k, side).position);
+                queue(k, side, d.direction, d.distance, d.irradiance);
+            }
         }
         trace(true);
     }
@@ -134,9 +136,12 @@ class Lighting {
     void emitters(int s) {
         for (std::size_t k = 0; k < order_.size(); ++k) {
             const vec3 u = samples_of(k, 0).at(s, technique_.samples);
-            const auto light = lights_.sample_emitter(grid_.points[order_[k]].position, u.x, {u.y, u.z});
-            if (light.pdf > 0.0f)
-                queue(k, light.direction, light.distance, light.radiance / (light.pdf * static_cast<float>(technique_.samples)));
+            for (unsigned side = 0; side < sides(); ++side) {
+                const auto light = lights_.sample_emitter(at(k, side).position, u.x, {u.y, u.z});
+                if (light.pdf > 0.0f)
+                    queue(k, side, light.direction, light.distance,
+                          light.radiance / (light.pdf * static_cast<float>(technique_.samples)));
+            }
         }
         trace(false);
     }
@@ -147,17 +152,15 @@ class Lighting {
             const vec3 u = samples_of(k, 1).at(s, technique_.samples);
             if (!lights_.environment_is_constant()) {
                 const auto light = lights_.sample_environment({u.x, u.y});
-                if (light.pdf > 0.0f) queue(k, light.direction, light.distance, light.radiance * (share / light.pdf));
+                for (unsigned side = 0; side < sides() && light.pdf > 0.0f; ++side)
+                    queue(k, side, light.direction, light.distance, light.radiance * (share / light.pdf));
                 continue;
             }
-            const VoxelPoint& point = grid_.points[order_[k]];
             const vec3 local = cosine_hemisphere({u.x, u.y});
-            if (!(local.z > 0.0f)) continue;
-            const vec3 up = Frame(point.normal).to_world(local);
-            const vec3 arriving = lights_.environment(up) * (pi * share / local.z);
-            queue(k, up, std::numeric_limits<float>::infinity(), arriving);
-            if (technique_.both_sides)
-                queue(k, up - point.normal * (2.0f * local.z), std::numeric_limits<float>::infinity(), arriving);
+            for (unsigned side = 0; side < sides() && local.z > 0.0f; ++side) {
+                const vec3 away = Frame(at(k, side).normal).to_world(local);
+                queue(k, side, away, std::numeric_limits<float>::infinity(), lights_.environment(away) * (pi * share / local.z));
+            }
         }
         trace(false);
     }

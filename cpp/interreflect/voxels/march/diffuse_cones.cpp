@@ -60,7 +60,8 @@ void add_receiver(const Work& work, int pixel, Receivers& to, ConeBatch& batch) 
         to.per_axis[Receivers::axis_direction][a][i] = axes[a][longest_axis(facing)];
     }
     for (auto& row : to.sum) row[i] = 0.0f;
-    set_start(batch, i, work.pyramid.domain.to_voxels(g.position[pixel]), facing, work.normal_offset, work.own_surface);
+    const Domain& domain = work.pyramid.domain;
+    set_start(batch, i, domain, domain.to_voxels(g.position[pixel]), facing, work.normal_offset, work.own_surface);
 }
 
 void find_receivers(const Work& work, const Tile& tile, int phase, Receivers& found, ConeBatch& batch) {

@@ -19,9 +19,9 @@ struct DiffuseCones {
     double half_angle = 0.0;
     double step = 0.75;
     double first_diameter = 0.75;
-    double normal_offset = 1.5;
+    double normal_offset = 0.75;
     double level_bias = -1.0;
-    double density = 1.0;
+    double density = 0.6;
     double cut_off = 0.02;
     bool own_surface = false;
 

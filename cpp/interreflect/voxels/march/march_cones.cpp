@@ -83,11 +83,18 @@ HWY_INLINE void place_taps(D d, const LevelView& level, V x, V y, V z, Taps& tap
     hn::Store(hn::Sub(qz, bz), d, taps.fz);
 }
 
-/// What a cone sees of a level: its one volume, or three of its six blended by the squared direction.
+/// The octant of a direction, whose coordinates lie `capacity` apart.
+HWY_INLINE std::size_t octant_of(const float* direction) {
+    return static_cast<std::size_t>((direction[0] > 0.0f ? 1 : 0) + (direction[ConeBatch::capacity] > 0.0f ? 2 : 0) +
+                                    (direction[2 * ConeBatch::capacity] > 0.0f ? 4 : 0));
+}
+
+/// What a cone sees of a level: its one volume, the one of its octant, or three of its six blended by the squared direction.
 HWY_INLINE hn::Vec<decltype(d4)> sample(const LevelView& level, const Taps& taps, int lane, const float* direction) {
     const Half* at = level.texels + taps.offset[lane];
+    if (level.faces == 8) at += level.volume * octant_of(direction);
     const float fx = taps.fx[lane], fy = taps.fy[lane], fz = taps.fz[lane];
-    if (level.faces == 1) return tap(at, level.row, level.slice, fx, fy, fz);
+    if (level.faces != 6) return tap(at, level.row, level.slice, fx, fy, fz);
     auto sum = hn::Zero(d4);
     for (int axis = 0; axis < 3; ++axis) {
         const float along = direction[axis * ConeBatch::capacity];
@@ -101,12 +108,12 @@ HWY_INLINE hn::Vec<decltype(d4)> sample(const LevelView& level, const Taps& taps
 /// Two levels of one volume each at once, in the two halves of a vector. `weights`: of the two columns of texels of the finer
 /// level and of the coarser one, blend included.
 HWY_INLINE hn::Vec<decltype(d4)> sample_both(const LevelView& l0, const Taps& t0, const LevelView& l1, const Taps& t1, int lane,
-                                             const float* weights) {
+                                             std::size_t octant, const float* weights) {
     const hn::FixedTag<float, 16> d16;
     const hn::FixedTag<float, 8> d8;
     const hn::FixedTag<Half, 16> h16;
     const hn::FixedTag<Half, 8> h8;
-    const Half *p = l0.texels + t0.offset[lane], *q = l1.texels + t1.offset[lane];
+    const Half *p = l0.texels + l0.volume * octant + t0.offset[lane], *q = l1.texels + l1.volume * octant + t1.offset[lane];
     const auto load = [&](std::size_t o0, std::size_t o1)
                           HWY_ATTR { return hn::PromoteTo(d16, hn::Combine(h16, hn::LoadU(h8, q + o1), hn::LoadU(h8, p + o0))); };
     const auto vy = hn::Combine(d16, hn::Set(d8, t1.fy[lane]), hn::Set(d8, t0.fy[lane]));
@@ -152,12 +159,15 @@ HWY_INLINE V tent_integral(D d, V x) {
 
 /// What the receiver's own plane adds to a level's filtered opacity at a sample: its voxels are a layer `width` texels thick.
 template <class D, class V = hn::Vec<D>>
-HWY_INLINE V own_opacity(D d, float inverse_size, V height, V width, V axis_plane, V axis_sample, V aligned) {
+HWY_INLINE V own_opacity(D d, float inverse_size, V height, V width, V axis_plane, V axis_sample, V axis_cells, V aligned) {
     const V scale = hn::Set(d, inverse_size), half = hn::Set(d, 0.5f), one = hn::Set(d, 1.0f), zero = hn::Zero(d);
     const V h = hn::Mul(height, scale), reach = hn::Mul(width, half);
     const V mean = hn::Sub(tent_integral(d, hn::Add(h, reach)), tent_integral(d, hn::Sub(h, reach)));
     const V centre = hn::Add(hn::Floor(hn::Mul(axis_plane, scale)), half);
-    const V known = hn::Max(hn::Sub(one, hn::Abs(hn::Sub(hn::Mul(axis_sample, scale), centre))), zero);
+    // The border repeats the outermost texels: beyond their centres nothing changes.
+    const V last = hn::Sub(hn::Ceil(hn::Mul(axis_cells, scale)), half);
+    const V sample = hn::Min(hn::Max(hn::Mul(axis_sample, scale), half), last);
+    const V known = hn::Max(hn::Sub(one, hn::Abs(hn::Sub(sample, centre))), zero);
     return hn::IfThenElse(hn::Gt(aligned, zero), known, mean);
 }
 
@@ -179,12 +189,13 @@ template <class D>
 HWY_INLINE void sample_lanes(D d, unsigned bits, const LevelView& l0, const Taps& fine, const LevelView* l1, const Taps& coarse,
                              float blend, const float* directions, float* colour) {
 #if HWY_MAX_BYTES >= 64
-    if (l1 != nullptr && l1->faces == 1) {
+    if (l1 != nullptr && l1->faces != 6) {
         alignas(64) float weights[4 * max_lanes];
         column_weights(d, fine, coarse, blend, weights);
         for (unsigned left = bits; left != 0; left &= left - 1) {
             const int lane = static_cast<int>(hwy::Num0BitsBelowLS1Bit_Nonzero32(left));
-            hn::Store(sample_both(l0, fine, *l1, coarse, lane, weights + 4 * lane), d4, colour + 4 * lane);
+            const std::size_t octant = l0.faces == 8 ? octant_of(directions + lane) : 0;
+            hn::Store(sample_both(l0, fine, *l1, coarse, lane, octant, weights + 4 * lane), d4, colour + 4 * lane);
         }
         return;
     }
@@ -218,7 +229,7 @@ ConeCounts march_batch(const Pyramid& pyramid, const ConeSchedule& schedule, flo
         const V height = hn::Load(d, batch.height + first), slope = hn::Load(d, batch.slope + first);
         const V width = hn::Load(d, batch.width + first), aligned = hn::Load(d, batch.aligned + first);
         const V axis_plane = hn::Load(d, batch.axis_plane + first), axis_start = hn::Load(d, batch.axis_start + first);
-        const V axis_direction = hn::Load(d, batch.axis_direction + first);
+        const V axis_direction = hn::Load(d, batch.axis_direction + first), axis_cells = hn::Load(d, batch.axis_cells + first);
         const auto has_plane = hn::Gt(width, zero);
         V r = zero, g = zero, b = zero, open = one;
         alignas(64) float colour[4 * max_lanes] = {};
@@ -249,9 +260,9 @@ ConeCounts march_batch(const Pyramid& pyramid, const ConeSchedule& schedule, flo
             hn::LoadInterleaved4(d, colour, tr, tg, tb, ta);
             ta = hn::Min(hn::Max(ta, zero), one);
             const V h = hn::MulAdd(slope, distance, height), along = hn::MulAdd(axis_direction, distance, axis_start);
-            V own = own_opacity(d, l0.inverse_size, h, width, axis_plane, along, aligned);
+            V own = own_opacity(d, l0.inverse_size, h, width, axis_plane, along, axis_cells, aligned);
             if (two) {
-                const V next = own_opacity(d, l1.inverse_size, h, width, axis_plane, along, aligned);
+                const V next = own_opacity(d, l1.inverse_size, h, width, axis_plane, along, axis_cells, aligned);
                 own = hn::MulAdd(hn::Sub(next, own), hn::Set(d, step.blend), own);
             }
             own = hn::IfThenElseZero(has_plane, own);

@@ -18,6 +18,7 @@ struct ConeBatch {
     // The coordinate along the normal's largest component, of the plane, the start and the direction, and how far the normal
     // agrees with that axis: 1 where the layer's place in the grid is known, 0 where its mean over all places must do.
     alignas(64) float axis_plane[capacity], axis_start[capacity], axis_direction[capacity], aligned[capacity];
+    alignas(64) float axis_cells[capacity];  // size of the domain along that axis
     // Results: radiance in the pyramid's unit (times `scale` is W/(m^2 sr)), and the share that leaves the domain unblocked.
     alignas(64) float r[capacity], g[capacity], b[capacity], open[capacity];
 };
@@ -29,7 +30,8 @@ inline int longest_axis(const vec3& normal) {
 }
 
 /// Enters where cone `i` starts: `offset` voxels above the plane through `surface` with that normal.
-inline void set_start(ConeBatch& batch, int i, const vec3& surface, const vec3& normal, float offset, bool see_own_surface) {
+inline void set_start(ConeBatch& batch, int i, const Domain& domain, const vec3& surface, const vec3& normal, float offset,
+                      bool see_own_surface) {
     const vec3 start = surface + normal * offset, size = glm::abs(normal);
     const int axis = longest_axis(normal);
     batch.x[i] = start.x, batch.y[i] = start.y, batch.z[i] = start.z;
@@ -37,6 +39,7 @@ inline void set_start(ConeBatch& batch, int i, const vec3& surface, const vec3& 
     batch.width[i] = see_own_surface ? 0.0f : size.x + size.y + size.z;
     batch.axis_plane[i] = surface[axis];
     batch.axis_start[i] = start[axis];
+    batch.axis_cells[i] = static_cast<float>(domain.cells[axis]);
     // Within 8 degrees of an axis: over the few texels of a filter such a plane stays in one layer.
     batch.aligned[i] = size[axis] > 0.99f ? 1.0f : 0.0f;
 }

@@ -38,12 +38,13 @@ vec3 texel_radiance(const Pyramid& pyramid, const ivec3& at) {
            (pyramid.scale / glm::unpackHalf1x16(texel[3]));
 }
 
-/// The side of the voxel that faces the same way as the surface that was seen.
+/// The side of the voxel that faces most as the surface that was seen does.
 vec3 side_radiance(const LitVoxels& lit, std::uint32_t cell, const vec3& seen_normal) {
     const auto& cells = lit.grid->cell;
     const auto found = std::lower_bound(cells.begin(), cells.end(), cell);
     const auto voxel = static_cast<std::size_t>(found - cells.begin());
-    const bool back = glm::dot(lit.grid->normal[voxel], seen_normal) < 0.0f && !lit.back.empty();
+    const bool back =
+        !lit.back.empty() && glm::dot(lit.grid->backs[voxel].normal - lit.grid->points[voxel].normal, seen_normal) > 0.0f;
     return back ? lit.back[voxel] : lit.radiance[voxel];
 }
 

@@ -1,11 +1,29 @@
 /// What every prefilter shares: a pyramid's levels, its finest level written from the voxels, its borders.
 #pragma once
+#include <algorithm>
+
 #include "data/voxel_grid.h"
+#include "math/parallel.h"
 
 namespace interreflect {
 
 /// How eight texels become one.
 enum class Coverage { volume, surface };
+
+/// A level as plain numbers, in halves: kernels of several targets share no functions.
+struct LevelView {
+    std::uint16_t* texels;
+    int nx, ny, nz;
+    std::size_t row, slice, volume;
+};
+/// The voxels of some slices of the finest level.
+struct VoxelView {
+    const std::uint32_t* cell;
+    const float *radiance, *back, *normal, *opacity;
+    const VoxelPoint* points;
+    std::size_t begin, end;
+    float inverse_scale;
+};
 
 /// The pyramid's empty levels: memory not yet written.
 Pyramid make_levels(const Domain& domain, int faces);
@@ -14,10 +32,32 @@ Pyramid make_levels(const Domain& domain, int faces);
 /// radiance is not finite.
 float radiance_scale(const LitVoxels& lit);
 
+LevelView view(Pyramid::Level& level);
+/// All voxels, with radiance divided by `scale`.
+VoxelView view(const LitVoxels& lit, float scale);
+/// The voxels in slices 2 z and 2 z + 1.
+VoxelView slices_of(VoxelView voxels, const Domain& domain, int z);
+
+/// Repeats the outermost texels of every slice in its border, and the outermost slices.
+void fill_border(Pyramid::Level& level);
+
+/// The slices of one level in pieces worth a thread's while.
+template <class Body>
+void over_slices(const Pyramid::Level& level, const Body& body) {
+    const std::size_t per_slice = static_cast<std::size_t>(level.size.x) * level.size.y * level.faces;
+    const std::size_t block = std::max<std::size_t>(1, 4096 / per_slice);
+    parallel_blocks(static_cast<std::size_t>(level.size.z), block, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t z = begin; z < end; ++z) body(static_cast<int>(z));
+    });
+}
+
 /// Every level of one face: the finest one cleared and written from the voxels, each other one reduced from the one below it.
 Pyramid build_isotropic(Coverage coverage, const LitVoxels& lit);
 
 /// Six faces from the second level on.
 Pyramid build_anisotropic(const LitVoxels& lit);
+
+/// Eight octants of directions at every level.
+Pyramid build_octants(const LitVoxels& lit);
 
 }  // namespace interreflect

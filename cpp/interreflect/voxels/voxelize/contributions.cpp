@@ -115,10 +115,8 @@ class Store {
 struct Voxel {
     float area = 0, total = 0;
     vec3 albedo{0}, position{0}, normal{0}, emission{0};
-    // The largest part of a triangle in the cell, the first of equals: a point on that triangle.
-    float largest = 0.0f, offset = 0.0f;
-    vec3 point{0}, point_normal{0};
-    std::uint32_t back = 0;
+    // The largest part of a triangle, the first of equals, among those that face as the first does, and among the others.
+    Contribution largest[2];
 
     void add(const Contribution& c) {
         total += c.total;
@@ -126,15 +124,27 @@ struct Voxel {
         albedo += c.albedo;
         position += c.position;
         normal += c.normal * c.area;
-        if (c.area > largest) {
-            largest = c.area;
-            offset = c.offset;
-            point = c.position;
-            point_normal = c.normal;
-            back = c.back;
-        }
+        const bool opposed = largest[0].area > 0.0f && glm::dot(largest[0].normal, c.normal) < 0.0f;
+        if (c.area > largest[opposed].area) largest[opposed] = c;
     }
 };
+
+VoxelPoint point_of(const Contribution& part, const vec3& centre, const Domain& domain) {
+    return {domain.to_world(centre + part.position / part.area), part.offset, part.normal, 1};
+}
+
+/// Front and back of a voxel: its largest part; and the largest that faces away, or, where that is but a sliver, the front's own
+/// back.
+void write_points(const Voxel& voxel, const vec3& centre, std::size_t i, VoxelGrid& grid) {
+    const bool second = voxel.largest[1].area > voxel.largest[0].area;
+    const Contribution &front = voxel.largest[second ? 1 : 0], &other = voxel.largest[second ? 0 : 1];
+    grid.points[i] = point_of(front, centre, grid.domain);
+    const bool two = other.area > 0.1f * front.area && glm::dot(front.normal, other.normal) < -0.2f;
+    grid.backs[i] = two ? point_of(other, centre, grid.domain) : grid.points[i];
+    if (two) return;
+    grid.backs[i].normal = -front.normal;
+    grid.backs[i].reflects = front.back;
+}
 
 void write_voxel(const Voxel& voxel, std::uint32_t cell, std::size_t i, VoxelGrid& grid) {
     const Domain& domain = grid.domain;
@@ -148,7 +158,7 @@ void write_voxel(const Voxel& voxel, std::uint32_t cell, std::size_t i, VoxelGri
     // Opposite sides that cancel leave rounding only: 1e-3 of the area is no direction.
     const float length = glm::length(voxel.normal);
     grid.normal[i] = length > 1e-3f * voxel.area ? voxel.normal / length : vec3(0);
-    grid.points[i] = {domain.to_world(centre + voxel.point / voxel.largest), voxel.offset, voxel.point_normal, voxel.back};
+    write_points(voxel, centre, i, grid);
 }
 
 void resize(VoxelGrid& grid, std::size_t size) {
@@ -159,6 +169,7 @@ void resize(VoxelGrid& grid, std::size_t size) {
     grid.position = Buffer<vec3>(size);
     grid.opacity = Buffer<float>(size);
     grid.points = Buffer<VoxelPoint>(size);
+    grid.backs = Buffer<VoxelPoint>(size);
 }
 
 /// What one thread needs, kept from piece to piece.

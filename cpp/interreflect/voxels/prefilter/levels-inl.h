@@ -1,0 +1,106 @@
+// Texels as vectors. Included once for every vector target.
+#if defined(INTERREFLECT_LEVELS_KERNEL) == defined(HWY_TARGET_TOGGLE)
+#ifdef INTERREFLECT_LEVELS_KERNEL
+#undef INTERREFLECT_LEVELS_KERNEL
+#else
+#define INTERREFLECT_LEVELS_KERNEL
+#endif
+
+#include "voxels/prefilter/levels.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace interreflect {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+using D = hn::FixedTag<float, 4>;  // one texel
+using H = hn::Rebind<hwy::float16_t, D>;
+using V = hn::Vec<D>;
+
+HWY_INLINE V load(const std::uint16_t* texel) {
+    return hn::PromoteTo(D(), hn::LoadU(H(), reinterpret_cast<const hwy::float16_t*>(texel)));
+}
+HWY_INLINE void store(V value, std::uint16_t* texel) {
+    hn::StoreU(hn::DemoteTo(H(), value), H(), reinterpret_cast<hwy::float16_t*>(texel));
+}
+HWY_INLINE V alpha_of(V texel) { return hn::Broadcast<3>(texel); }
+
+HWY_INLINE std::size_t at(const LevelView& level, int x, int y, int z) {
+    return static_cast<std::size_t>(z + 1) * level.slice + static_cast<std::size_t>(y + 1) * level.row +
+           static_cast<std::size_t>(x + 1) * 4;
+}
+
+/// The eight texels below one, in the order x + 2 y + 4 z; those beyond the finer level are air.
+struct Children {
+    const std::uint16_t* texel[8];
+};
+alignas(16) constexpr std::uint16_t air[4] = {0, 0, 0, 0};
+HWY_INLINE Children children(const LevelView& fine, int x, int y, int z) {
+    Children c;
+    for (int i = 0; i < 8; ++i) {
+        const int cx = 2 * x + (i & 1), cy = 2 * y + ((i >> 1) & 1), cz = 2 * z + (i >> 2);
+        const bool inside = cx < fine.nx && cy < fine.ny && cz < fine.nz;
+        c.texel[i] = inside ? fine.texels + at(fine, cx, cy, cz) : air;
+    }
+    return c;
+}
+
+/// Whether all eight are air: four looks at two neighbours.
+HWY_INLINE bool all_air(const LevelView& fine, int x, int y, int z) {
+    const std::uint16_t* first = fine.texels + at(fine, 2 * x, 2 * y, 2 * z);
+    std::uint64_t any = 0;
+    // Beyond the finer level lies its border: air where the texel inside it is.
+    for (std::size_t i = 0; i < 4; ++i) {
+        std::uint64_t pair[2];
+        __builtin_memcpy(pair, first + (i & 1) * fine.row + (i >> 1) * fine.slice, sizeof(pair));
+        any |= pair[0] | pair[1];
+    }
+    return any == 0;
+}
+
+/// What an eye sees through one face of eight texels: the four pairs along its axis, front to back, then their mean.
+HWY_INLINE V composite(const V* texel, int face) {
+    const D d;
+    const int axis = face >> 1, behind = 1 << axis, towards = face & 1;
+    V sum = hn::Zero(d);
+    for (int i = 0; i < 8; ++i) {
+        if ((i & behind) != 0) continue;
+        const V front = texel[towards != 0 ? i | behind : i], back = texel[towards != 0 ? i : i | behind];
+        sum = hn::Add(sum, hn::MulAdd(back, hn::Sub(hn::Set(d, 1.0f), alpha_of(front)), front));
+    }
+    return hn::Mul(sum, hn::Set(d, 0.25f));
+}
+
+HWY_INLINE V premultiplied(const float* radiance, float opacity, float inverse_scale) {
+    const D d;
+    HWY_ALIGN float rgba[4] = {radiance[0] * inverse_scale, radiance[1] * inverse_scale, radiance[2] * inverse_scale, 1.0f};
+    return hn::Mul(hn::Load(d, rgba), hn::Set(d, opacity));
+}
+
+/// A voxel, and its copies in the border.
+HWY_INLINE void write_voxel(const LevelView& level, int x, int y, int z, V value) {
+    store(value, level.texels + at(level, x, y, z));
+    const bool inner = x > 0 && y > 0 && z > 0 && x + 1 < level.nx && y + 1 < level.ny && z + 1 < level.nz;
+    if (inner) return;
+    for (int bz = (z == 0 ? -1 : z); bz <= (z + 1 == level.nz ? z + 1 : z); ++bz)
+        for (int by = (y == 0 ? -1 : y); by <= (y + 1 == level.ny ? y + 1 : y); ++by)
+            for (int bx = (x == 0 ? -1 : x); bx <= (x + 1 == level.nx ? x + 1 : x); ++bx)
+                store(value, level.texels + at(level, bx, by, bz));
+}
+
+/// Slices 2 z and 2 z + 1 of the finest level (with the border next to them): cleared, then written.
+inline void write_slices(const LevelView& finest, const VoxelView& voxels, int z) {
+    const int first = z == 0 ? -1 : 2 * z, last = 2 * z + 2 >= finest.nz ? finest.nz : 2 * z + 1;
+    __builtin_memset(finest.texels + static_cast<std::size_t>(first + 1) * finest.slice, 0,
+                     static_cast<std::size_t>(last - first + 1) * finest.slice * sizeof(std::uint16_t));
+    for (std::size_t i = voxels.begin; i < voxels.end; ++i) {
+        const auto cell = static_cast<int>(voxels.cell[i]);
+        const int line = cell / finest.nx;
+        write_voxel(finest, cell % finest.nx, line % finest.ny, line / finest.ny,
+                    premultiplied(voxels.radiance + 3 * i, voxels.opacity[i], voxels.inverse_scale));
+    }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace interreflect
+HWY_AFTER_NAMESPACE();
+#endif

@@ -1,0 +1,93 @@
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <stdexcept>
+
+#include "voxels/prefilter/levels.h"
+
+namespace interreflect {
+namespace {
+
+/// The vectors as floats, three each; there may be none.
+const float* floats(const Buffer<vec3>& vectors) { return reinterpret_cast<const float*>(vectors.data()); }
+
+}  // namespace
+
+Pyramid make_levels(const Domain& domain, int faces) {
+    Pyramid pyramid;
+    pyramid.domain = domain;
+    pyramid.faces = faces;
+    for (ivec3 size = domain.cells;; size = (size + 1) / 2) {
+        Pyramid::Level level;
+        level.size = size;
+        level.faces = pyramid.levels.empty() && faces == 6 ? 1 : faces;
+        level.texels = Buffer<std::uint16_t>(level.volume() * static_cast<std::size_t>(level.faces) * 4);
+        pyramid.levels.push_back(std::move(level));
+        if (size == ivec3(1)) return pyramid;
+    }
+}
+
+float radiance_scale(const LitVoxels& lit) {
+    float largest = 0.0f;
+    for (const Buffer<vec3>* side : {&lit.radiance, &lit.back})
+        for (const vec3& radiance : *side) {
+            const float sum = radiance.x + radiance.y + radiance.z;
+            if (!std::isfinite(sum)) throw std::invalid_argument("prefilter: a voxel's radiance is not finite");
+            largest = std::max({largest, radiance.x, radiance.y, radiance.z});
+        }
+    if (!(largest > 0.0f)) return 1.0f;
+    // Twice 2^-14 below the least float: its inverse must stay finite.
+    return std::ldexp(1.0f, std::clamp(std::ilogb(largest), -110, 127) - 14);
+}
+
+LevelView view(Pyramid::Level& level) {
+    return {level.texels.data(), level.size.x,      level.size.y,      level.size.z,
+            level.row() * 4,     level.slice() * 4, level.volume() * 4};
+}
+
+VoxelView view(const LitVoxels& lit, float scale) {
+    const VoxelGrid& grid = *lit.grid;
+    return {grid.cell.data(),
+            floats(lit.radiance),
+            lit.back.empty() ? nullptr : floats(lit.back),
+            floats(grid.normal),
+            grid.opacity.data(),
+            grid.points.data(),
+            0,
+            grid.size(),
+            1.0f / scale};
+}
+
+VoxelView slices_of(VoxelView voxels, const Domain& domain, int z) {
+    const auto per_slice = static_cast<std::uint64_t>(domain.cells.x) * static_cast<std::uint64_t>(domain.cells.y);
+    const auto first_of = [&](std::uint64_t slice) {
+        const auto* end = voxels.cell + voxels.end;
+        return static_cast<std::size_t>(std::lower_bound(voxels.cell, end, slice * per_slice) - voxels.cell);
+    };
+    const std::size_t begin = first_of(2 * static_cast<std::uint64_t>(z)), end = first_of(2 * static_cast<std::uint64_t>(z) + 2);
+    voxels.begin = begin, voxels.end = end;
+    return voxels;
+}
+
+void fill_border(Pyramid::Level& level) {
+    constexpr std::size_t texel = 4;
+    const std::size_t row = level.row() * texel, slice = level.slice() * texel;
+    for (int face = 0; face < level.faces; ++face) {
+        std::uint16_t* volume = level.texels.data() + static_cast<std::size_t>(face) * level.volume() * texel;
+        for (int z = 1; z <= level.size.z; ++z) {
+            std::uint16_t* first = volume + static_cast<std::size_t>(z) * slice;
+            for (int y = 1; y <= level.size.y; ++y) {
+                std::uint16_t* line = first + static_cast<std::size_t>(y) * row;
+                std::memcpy(line, line + texel, texel * sizeof(*line));
+                std::memcpy(line + row - texel, line + row - 2 * texel, texel * sizeof(*line));
+            }
+            std::memcpy(first, first + row, row * sizeof(*first));
+            std::memcpy(first + slice - row, first + slice - 2 * row, row * sizeof(*first));
+        }
+        const std::size_t last = static_cast<std::size_t>(level.size.z) + 1;
+        std::memcpy(volume, volume + slice, slice * sizeof(*volume));
+        std::memcpy(volume + last * slice, volume + (last - 1) * slice, slice * sizeof(*volume));
+    }
+}
+
+}  // namespace interreflect
