@@ -19,6 +19,12 @@ from welch import compare
 SIZE = (64, 48)
 # Every pixel has all cones: interleaved ones see another part of them at the picture's border.
 CONES = ir.methods.VoxelConeTracing(grid=ir.Grid(resolution=48), share=ir.EveryPixel(), shadow=ir.TracedShadows(samples=16))
+# Octants change abruptly where a cone's direction crosses a plane of the grid: on walls along the grid some cones lie in such planes,
+# and rounding, or the turn of a pixel's frame, puts them on either side. That moves single pixels, and the mean by a per cent or two.
+SIDES = {
+    "one side": (CONES.replace({"prefilter": ir.SurfaceCoverage(), "light_voxels": ir.TracedLighting()}), 1),
+    "octants": (CONES, 2),
+}
 ASIDE = ir.Camera(position=(0.13, 1.07, 3.7), target=(0, 1, 0), fov_x=39)  # beside the plane of symmetry: no edge runs through pixels
 
 
@@ -38,22 +44,28 @@ def differing(a: np.ndarray, b: np.ndarray, by: float) -> float:
     return float((np.abs(a - b).max(-1) > by * (a.max(-1) + a.mean())).mean())
 
 
+@pytest.mark.parametrize("sides", SIDES)
 @pytest.mark.parametrize("change", [{"scale": 1e-3}, {"scale": 1e3}, {"shift": (200, -200, 200)}], ids=str)
-def test_voxel_cone_tracing_makes_the_same_picture_of_a_scene_of_another_size_or_place(room: ir.Scene, change: dict[str, Any]) -> None:
-    before, after = (CONES.render(scene, size=SIZE) for scene in (room, placed(room, **change)))
+def test_voxel_cone_tracing_makes_the_same_picture_of_a_scene_of_another_size_or_place(
+    room: ir.Scene, change: dict[str, Any], sides: str
+) -> None:
+    cones, free = SIDES[sides]
+    before, after = (cones.render(scene, size=SIZE) for scene in (room, placed(room, **change)))
     assert differing(before.direct, after.direct, 1e-2) < 0.005  # edges of shadows within rounding of a pixel's centre
     # Rounding lights a voxel at a shadow's edge or not, which the pixels near it see.
-    assert differing(before.indirect, after.indirect, 5e-2) < 0.01
+    assert differing(before.indirect, after.indirect, 5e-2) < 0.01 * free
     assert after.indirect.mean() == pytest.approx(before.indirect.mean(), rel=0.01)
     assert after.direct.mean() == pytest.approx(before.direct.mean(), rel=1e-3)
 
 
+@pytest.mark.parametrize("sides", SIDES)
 @pytest.mark.parametrize("axis", [(0, 1, 0), (1, 0, 0), (0, 0, 1)], ids=str)
-def test_voxel_cone_tracing_turns_with_a_scene_that_turns_with_the_grid(room: ir.Scene, axis: tuple[int, int, int]) -> None:
-    before, after = (CONES.render(scene, size=SIZE) for scene in (room, placed(room, turn=turned(90, axis))))
+def test_voxel_cone_tracing_turns_with_a_scene_that_turns_with_the_grid(room: ir.Scene, axis: tuple[int, int, int], sides: str) -> None:
+    cones, free = SIDES[sides]
+    before, after = (cones.render(scene, size=SIZE) for scene in (room, placed(room, turn=turned(90, axis))))
     # Voxels fall alike, but look at other points of the lamp; the cones of a pixel are turned about its normal.
-    assert after.indirect.mean() == pytest.approx(before.indirect.mean(), rel=0.01)
-    assert np.abs(after.indirect - before.indirect).mean() < 0.04 * before.indirect.mean()
+    assert after.indirect.mean() == pytest.approx(before.indirect.mean(), rel=0.01 * free)
+    assert np.abs(after.indirect - before.indirect).mean() < 0.04 * free * before.indirect.mean()
     assert after.direct.mean() == pytest.approx(before.direct.mean(), rel=0.01)  # other points on the lamp
 
 

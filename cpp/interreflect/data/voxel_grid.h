@@ -41,13 +41,6 @@ struct VoxelPoint {
     std::uint32_t reflects;  // 0: this side of the voxel reflects nothing
 };
 
-/// Whether a surface faces an eye that looks along an octant of directions: bits 1, 2, 4 where x, y, z are above 0.
-inline bool faces_octant(const vec3& normal, unsigned octant) {
-    return ((octant & 1U) != 0 ? normal.x : -normal.x) + ((octant & 2U) != 0 ? normal.y : -normal.y) +
-               ((octant & 4U) != 0 ? normal.z : -normal.z) <=
-           0.0f;
-}
-
 /// The voxels that the surface passes through, in ascending order of their cell, in parallel arrays.
 struct VoxelGrid {
     Domain domain;

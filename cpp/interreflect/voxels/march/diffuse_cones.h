@@ -21,7 +21,7 @@ struct DiffuseCones {
     double first_diameter = 0.75;
     double normal_offset = 0.75;
     double level_bias = -1.0;
-    double density = 0.6;
+    double density = 0.9;
     double cut_off = 0.02;
     bool own_surface = false;
 

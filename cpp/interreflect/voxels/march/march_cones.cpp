@@ -85,8 +85,8 @@ HWY_INLINE void place_taps(D d, const LevelView& level, V x, V y, V z, Taps& tap
 
 /// The octant of a direction, whose coordinates lie `capacity` apart.
 HWY_INLINE std::size_t octant_of(const float* direction) {
-    return static_cast<std::size_t>((direction[0] > 0.0f ? 1 : 0) + (direction[ConeBatch::capacity] > 0.0f ? 2 : 0) +
-                                    (direction[2 * ConeBatch::capacity] > 0.0f ? 4 : 0));
+    const auto positive = [direction](int axis) { return direction[axis * ConeBatch::capacity] > 0.0f ? 1U : 0U; };
+    return positive(0) + 2 * positive(1) + 4 * positive(2);
 }
 
 /// What a cone sees of a level: its one volume, the one of its octant, or three of its six blended by the squared direction.

@@ -57,20 +57,34 @@ void reduce_slice_octants(const LevelView& fine, const LevelView& coarse, int z)
         }
 }
 
-/// What one voxel shows from its front and from its back.
+/// What one voxel shows to eyes that look along an octant: its front and its back as far as they face them. A back that no light
+/// falls on is the inside of a solid rather than anything to be seen, wherever some of the front faces the octant.
 struct Sides {
     V front, back;
+    vec3 normal;
+    bool back_lit;
+
+    HWY_INLINE V seen(unsigned octant) const {
+        float facing = 0, away = 0;
+        for (int axis = 0; axis < 3; ++axis) {
+            const float along = (octant >> axis & 1U) != 0 ? normal[axis] : -normal[axis];
+            (along < 0.0f ? facing : away) += along < 0.0f ? -along : along;
+        }
+        const float share = facing + away > 0.0f ? facing / (facing + away) : 1.0f;
+        if (!back_lit) return share > 0.25f ? front : back;
+        return hn::MulAdd(hn::Sub(front, back), hn::Set(D(), share), back);
+    }
 };
 HWY_INLINE Sides sides_of(const VoxelView& voxels, std::size_t i) {
     const V front = premultiplied(voxels.radiance + 3 * i, voxels.opacity[i], voxels.inverse_scale);
-    if (voxels.back == nullptr) return {front, front};
+    if (voxels.back == nullptr) return {front, front, vec3(0), false};
     const float* radiance = voxels.back + 3 * i;
     const V back = premultiplied(radiance, voxels.opacity[i], voxels.inverse_scale);
     const bool lit = radiance[0] > 0.0f || radiance[1] > 0.0f || radiance[2] > 0.0f;
-    return {front, lit ? back : hn::Or(back, hidden_mark())};
+    return {front, lit ? back : hn::Or(back, hidden_mark()), voxels.points[i].normal, lit};
 }
 
-/// Slices 2 z and 2 z + 1 of the finest level's eight octants: a voxel shows its front where that faces the eye, else its back.
+/// Slices 2 z and 2 z + 1 of the finest level's eight octants.
 void write_slices_octants(const LevelView& finest, const VoxelView& voxels, int z) {
     VoxelView none = voxels;
     none.end = none.begin;
@@ -84,10 +98,8 @@ void write_slices_octants(const LevelView& finest, const VoxelView& voxels, int 
         const auto cell = static_cast<int>(voxels.cell[i]);
         const int line = cell / finest.nx;
         const Sides sides = sides_of(voxels, i);
-        const vec3& normal = voxels.points == nullptr ? vec3(0) : voxels.points[i].normal;
         for (unsigned octant = 0; octant < 8; ++octant)
-            write_voxel(octants[octant], cell % finest.nx, line % finest.ny, line / finest.ny,
-                        faces_octant(normal, octant) ? sides.front : sides.back);
+            write_voxel(octants[octant], cell % finest.nx, line % finest.ny, line / finest.ny, sides.seen(octant));
     }
 }
 
