@@ -35,8 +35,8 @@ class Crossing:
     """How the error behaved over the sweep.
 
     outcome: "breaks" (below at the easy end, above later), "never", "always" above, "reversed" (above at the easy end, below later).
-    value: where the mean error first crosses the tolerance, NaN without. low, high: between the last value of those that are surely on
-    the safe side and the first that is surely beyond, in the order of values. points: all that was measured, from easy to hard.
+    value: where the mean error first crosses the tolerance, NaN without. low, high: the nearest values on either side of it at which the
+    error is surely below, or above, the tolerance. points: all that was measured, from easy to hard.
     before, after: the measured neighbours of the break point, easy side first; None where it does not cross.
     """
 
@@ -78,7 +78,7 @@ def find(row: Failure, measure: Callable[[float], Point], sweep: int = 6, bisect
         else:
             after = middle
     points.sort(key=lambda point: row.share(point.value))
-    low, high = _interval(row, points, reverse=above[0])
+    low, high = _interval(row, points, before, after)
     times = sum(a != b for a, b in itertools.pairwise(above))
     words = "above at the easy end, below from there on" if above[0] else ""
     if times > 1:
@@ -109,16 +109,16 @@ def _estimate(row: Failure, before: Point, after: Point) -> float:
     return row.at(a + (b - a) * (row.tolerance - before.error) / (after.error - before.error))
 
 
-def _interval(row: Failure, points: Sequence[Point], reverse: bool) -> tuple[float, float]:
-    """From the last value before which all are surely below the tolerance to the first that is surely above, smaller number first."""
-    ordered = list(reversed(points)) if reverse else list(points)
-    safe, broken = ordered[0].value, ordered[-1].value
-    for point in ordered:
-        if point.high >= row.tolerance:
-            break
-        safe = point.value
-    for point in ordered:
-        if point.low > row.tolerance:
-            broken = point.value
-            break
-    return min(safe, broken), max(safe, broken)
+def _interval(row: Failure, points: Sequence[Point], before: Point, after: Point) -> tuple[float, float]:
+    """From the break point outward on each side to the nearest value that is surely on that side of the tolerance, else to the end."""
+    index = points.index(before)
+    ends = [_sure(row, points[index::-1], before), _sure(row, points[index + 1 :], after)]
+    return min(ends), max(ends)
+
+
+def _sure(row: Failure, outward: Sequence[Point], nearest: Point) -> float:
+    above = nearest.error > row.tolerance
+    for point in outward:
+        if point.low > row.tolerance if above else point.high < row.tolerance:
+            return point.value
+    return outward[-1].value

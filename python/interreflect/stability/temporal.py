@@ -195,8 +195,11 @@ def compare(
     frames: Sequence[Any], method: Any, scene: Scene, motion: Motion, size: tuple[int, int], wanted: Reference = SAMPLES, pop: float = POP
 ) -> Played:
     """Frames of a motion that were rendered already, beside the truth."""
+    from tqdm import tqdm
+
     views = [motion.at(scene, k) for k in range(motion.frames)]
-    truths = [frame_truth(moved, camera, size, method.bounces, wanted) for moved, camera in views]
+    with tqdm(views, desc="truths", unit="frame", disable=None, leave=False) as progress:
+        truths = [frame_truth(moved, camera, size, method.bounces, wanted) for moved, camera in progress]
     seen = [surfaces(moved, camera, size) for moved, camera in views]
     scale = float(np.mean([truth.image.mean(dtype=np.float64) for truth in truths]))
     errors, own = [], []
