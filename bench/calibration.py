@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench.timing import least
+from interreflect import _core
 
 if TYPE_CHECKING:
     from bench.sponza import Sponza
@@ -51,14 +52,14 @@ TARGETS_MACHINE = Calibration(
 )  # fmt: skip
 
 
-def calibrate(peers: Any, sponza: Sponza | None) -> Calibration:
+def calibrate(sponza: Sponza | None) -> Calibration:
     """Measures the machine; rays only where Sponza is there."""
     load = os.getloadavg()[0]
     return Calibration(
-        read=peers.read_bandwidth(8),
-        triad=peers.triad_bandwidth(8),
-        multiply_add=peers.multiply_add_rate(20),
-        vector_bytes=peers.vector_bytes(),
+        read=_core.read_bandwidth(8),
+        triad=_core.triad_bandwidth(8),
+        multiply_add=_core.multiply_add_rate(20),
+        vector_bytes=_core.vector_bytes(),
         threads=len(os.sched_getaffinity(0)),
         load=load,
         rays={} if sponza is None else _ray_rates(sponza),

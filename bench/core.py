@@ -12,7 +12,7 @@ from bench.rows import Row
 def run(peers: Any) -> tuple[Calibration, list[Row]]:
     """Calibrates, then measures every row. peers: the module `_peers`."""
     scene = sponza.load(peers)
-    calibration = calibrate(peers, scene)
+    calibration = calibrate(scene)
     groups = (visibility_rows, voxel_rows, path_rows)
     measured = [row for group in groups for row in group.rows(calibration, scene)]
     return calibration, measured + house_rows.rows()

@@ -12,14 +12,12 @@
 #include <vector>
 
 #include "bench/ray_calls.h"
-#include "bench/stopwatch.h"
-#include "bench/throughput.h"
 #include "data/camera.h"
+#include "math/stopwatch.h"
 
 namespace {
 namespace py = pybind11;
 using namespace interreflect;
-using bench::Stopwatch;
 
 template <class T>
 using Array = py::array_t<T, py::array::c_style | py::array::forcecast>;
@@ -171,8 +169,4 @@ PYBIND11_MODULE(_peers, m) {
              "Milliseconds for one shadow ray from each origin (n, 3), 16 wide.")
         .def("trace", &EmbreePeer::trace, py::arg("origins"), py::arg("directions"), py::arg("width"), py::arg("any_hit"),
              py::arg("coherent"), "Milliseconds for rays (n, 3) by one of Embree's calls: width 1, 8, 16, or 256 for a stream.");
-    m.def("read_bandwidth", &bench::read_bandwidth, py::arg("repeats"), "GB/s, all cores, best of repeats.");
-    m.def("triad_bandwidth", &bench::triad_bandwidth, py::arg("repeats"), "GB/s of a = b + s c, all cores, best of repeats.");
-    m.def("multiply_add_rate", &bench::multiply_add_rate, py::arg("repeats"), "Single-precision GFLOP/s, all cores, best.");
-    m.def("vector_bytes", &bench::vector_bytes, "Bytes of the widest vectors, which the rates above used.");
 }

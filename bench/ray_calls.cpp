@@ -9,7 +9,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "bench/stopwatch.h"
+#include "math/stopwatch.h"
 
 namespace interreflect::bench {
 namespace {

@@ -41,4 +41,5 @@ PYBIND11_MODULE(_core, m) {
     bind_reference(m);
     bind_voxels(m);
     bind_march(m);
+    bind_calibration(m);
 }

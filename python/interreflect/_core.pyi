@@ -1018,6 +1018,10 @@ def march(technique: TracedRays | DiffuseCones, pyramid: Pyramid, gbuffer: GBuff
     """
     Light that arrives over the hemisphere at the pixels.
     """
+def multiply_add_rate(repeats: typing.SupportsInt | typing.SupportsIndex) -> float:
+    """
+    Single-precision GFLOP/s of fused multiply-adds, best of `repeats`.
+    """
 def path_trace(scene: Scene, camera: Camera, width: typing.SupportsInt | typing.SupportsIndex, height: typing.SupportsInt | typing.SupportsIndex, *, samples: typing.SupportsInt | typing.SupportsIndex=1, milliseconds: typing.SupportsFloat | typing.SupportsIndex | None=None, bounces: typing.SupportsInt | typing.SupportsIndex | None=1, pixel: str='centre', pattern: typing.SupportsInt | typing.SupportsIndex=8, seed: typing.SupportsInt | typing.SupportsIndex=0) -> PathTraced:
     """
     Path tracing with exactly `bounces` indirect bounces (None: all); `samples` paths a pixel, fewer where `milliseconds` end sooner.
@@ -1029,6 +1033,14 @@ def place(grid: Grid, scene: Scene, camera: Camera | None=None) -> Domain:
 def prefilter(technique: VolumeCoverage | SurfaceCoverage | Anisotropic | OctantCoverage, lit: LitVoxels) -> Pyramid:
     """
     Radiance and opacity of ever larger voxels.
+    """
+def ray_rates(repeats: typing.SupportsInt | typing.SupportsIndex) -> dict[str, typing.Any]:
+    """
+    Million rays a second inside a rough sphere of 131,072 triangles, best of `repeats`, by kind of ray.
+    """
+def read_bandwidth(repeats: typing.SupportsInt | typing.SupportsIndex, mebibytes: typing.SupportsInt | typing.SupportsIndex=256) -> float:
+    """
+    GB/s of reading an array of `mebibytes`, best of `repeats`.
     """
 def reflective_shadow_map(scene: Scene, light: typing.SupportsInt | typing.SupportsIndex, size: typing.SupportsInt | typing.SupportsIndex) -> ReflectiveShadowMap:
     """
@@ -1053,6 +1065,14 @@ def thread_limit() -> int:
 def trace_gbuffer(scene: Scene, camera: Camera, width: typing.SupportsInt | typing.SupportsIndex, height: typing.SupportsInt | typing.SupportsIndex) -> GBuffer:
     """
     The G-buffer by primary rays through pixel centres; textures are filtered by the pixel's footprint.
+    """
+def triad_bandwidth(repeats: typing.SupportsInt | typing.SupportsIndex, mebibytes: typing.SupportsInt | typing.SupportsIndex=256) -> float:
+    """
+    GB/s of a = b + s c over arrays of `mebibytes` each, best of `repeats`.
+    """
+def vector_bytes() -> int:
+    """
+    Bytes of the widest vectors of this machine.
     """
 def voxelize(technique: ExactOverlap | SurfaceSampling, scene: Scene, domain: Domain) -> VoxelGrid:
     """

@@ -25,7 +25,9 @@ class About:
     version: str
     commit: str
     processor: str
+    cores: int  # of the threads below; hyper-threads of one core count once
     threads: int
+    vector_bits: int  # of the widest vectors that the core uses here; 0: unknown
     memory_bytes: int
     system: str
     compiler: str
@@ -41,7 +43,8 @@ class About:
         build = [(name.replace("_", " "), str(value)) for name, value in self.build.items() if name not in ("compiler", "commit")]
         return [
             ("interreflect", f"{self.version}, commit {self.commit}"),
-            ("processor", f"{self.processor}, {self.threads} threads, {self.memory_bytes / 2**30:.1f} GiB"),
+            ("processor", f"{self.processor}, {self.cores} cores, {self.threads} threads, {self.memory_bytes / 2**30:.1f} GiB"),
+            ("vectors", f"{self.vector_bits} bits" if self.vector_bits else UNKNOWN),
             ("system", self.system),
             ("compiler", self.compiler),
             *build,
@@ -65,7 +68,9 @@ def about() -> About:
         version=_version("interreflect") or str(build.get("version", UNKNOWN)),
         commit=_commit() or str(build.get("commit") or UNKNOWN),
         processor=_processor(),
+        cores=_cores(),
         threads=len(os.sched_getaffinity(0)),
+        vector_bits=_vector_bits(),
         memory_bytes=os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES"),
         system=platform.platform(),
         compiler=str(build.get("compiler", UNKNOWN)),
@@ -95,6 +100,23 @@ def _processor() -> str:
     cpuinfo = Path("/proc/cpuinfo")
     found = re.search(r"^model name\s*:\s*(.+)$", cpuinfo.read_text(), re.MULTILINE) if cpuinfo.exists() else None
     return found.group(1).strip() if found else platform.processor() or platform.machine() or UNKNOWN
+
+
+def _cores() -> int:
+    """Groups of threads that share a core, of those that this process may use."""
+    shared = set()
+    for thread in os.sched_getaffinity(0):
+        siblings = Path(f"/sys/devices/system/cpu/cpu{thread}/topology/thread_siblings_list")
+        shared.add(siblings.read_text() if siblings.exists() else str(thread))
+    return len(shared)
+
+
+def _vector_bits() -> int:
+    try:
+        from interreflect import _core
+    except ImportError:
+        return 0
+    return 8 * _core.vector_bytes()
 
 
 def _commit() -> str:

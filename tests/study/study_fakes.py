@@ -11,7 +11,9 @@ from types import SimpleNamespace
 
 import numpy as np
 
+import interreflect.study.contention as contention
 import interreflect.study.reference as reference_module
+import interreflect.study.timing as timing
 
 
 @dataclasses.dataclass(frozen=True)
@@ -121,12 +123,20 @@ class FakePathTraced:
 
 def lasting(table):
     """The columns that are the same however often a study with fakes, whose times are given, is run."""
-    return table.drop(columns=["peak_memory_bytes"])
+    return table.drop(columns=["peak_memory_bytes", "calibration", "limit_milliseconds", "limit_ratio"])
 
 
 TRUTH = "STUDY_FAKES_TRUTH"  # set: truths by FakePathTracing, in every process that imports this file
 
 
+class QuietWatch(contention.Watch):
+    """On a machine that does nothing else, as far as tests with fakes are concerned."""
+
+    def contention(self):
+        return contention.Contention(0.0, False) if TRUTH in os.environ else super().contention()
+
+
+timing.Watch = QuietWatch
 real_path_tracer = reference_module.path_tracer
 reference_module.path_tracer = lambda: FakePathTracing if TRUTH in os.environ else real_path_tracer()
 

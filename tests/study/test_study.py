@@ -73,7 +73,7 @@ def test_an_unknown_knob_is_a_type_error():
         ("scenes", [Scene(), Scene("again")]),
         ("bounces", -1),
         ("bounces", "all"),
-        ("repeats", 0),
+        ("repeats", -1),
         ("max_repeats", 0),
         ("threads", 0),
         ("cameras", ["back"]),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import math
 import pickle
+import time
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager, suppress
 from typing import Any
@@ -13,6 +14,7 @@ import numpy as np
 
 import interreflect.cache as cache
 from interreflect import metrics
+from interreflect.study.calibration import Calibration, calibrate
 from interreflect.study.interface import Frame, Method, Prepared, Scene
 from interreflect.study.locks import Claims, machine
 from interreflect.study.memory import give_back, peak_bytes, reset_peak, resident_bytes
@@ -22,6 +24,7 @@ from interreflect.study.reference import Truth, reference, reference_key
 from interreflect.study.sources import package_digest
 from interreflect.study.timing import measure
 
+CALIBRATION_SECONDS = 900.0  # clocks and neighbours of a machine change
 Metric = Callable[[Any, Any], float]
 Changes = dict[str, Any]  # fields of a record
 ON_IMAGE: dict[str, Metric] = {
@@ -46,6 +49,7 @@ class Bench:
         self._say, self._await_go = say, await_go
         self._scene: tuple[str, Scene] | None = None
         self._truths: dict[str, Truth] = {}
+        self._calibrations: dict[int | None, tuple[float, Calibration]] = {}  # threads -> when, what
         self._prepared: tuple[bytes, Prepared, float] | None = None  # pickled method, preparation, its peak of memory
         _load_libraries()
         give_back()
@@ -67,19 +71,33 @@ class Bench:
         except Exception as error:
             return Reply({"status": FAILED, "failure": f"reference: {_words(error)}"})
         changes |= {"noise": truth.noise, "indirect_noise": truth.indirect_noise, "truth": truth.key, "truth_spp": truth.spp}
+        calibration = None
         try:
-            with self._turn("prepare", alone=True):
+            with self._turn("prepare", alone=request.repeats > 0):
+                if request.repeats > 0:
+                    calibration = request.calibration or self._calibrate(request.threads)
+                    changes["calibration"] = calibration.key
                 frame = self._render(scene, request, changes)
             with self._turn("metrics", alone=False):
                 changes |= compare(frame, truth)
         except KeyboardInterrupt:
             return Reply({}, interrupted=True)
         except Exception as error:
-            return Reply(changes | {"status": FAILED, "failure": _words(error), "images": False})
+            return Reply(changes | {"status": FAILED, "failure": _words(error), "images": False}, calibration=calibration)
         if not request.images:
-            return Reply(changes)
+            return Reply(changes, calibration=calibration)
         wanted = (truth.image, truth.indirect) if request.truth_wanted else None
-        return Reply(changes, (np.asarray(frame.image), np.asarray(frame.indirect)), wanted)
+        return Reply(changes, (np.asarray(frame.image), np.asarray(frame.indirect)), wanted, calibration)
+
+    def _calibrate(self, threads: int | None) -> Calibration:
+        """Once a run, or rather once a quarter of an hour and number of threads."""
+        known = self._calibrations.get(threads)
+        if known is None or time.monotonic() - known[0] > CALIBRATION_SECONDS:
+            self._say(Phase("calibrate"))
+            known = (time.monotonic(), calibrate(threads))
+            self._calibrations[threads] = known
+            self._say(Phase("prepare"))
+        return known[1]
 
     def _take_scene(self, request: Request) -> Scene:
         if request.scene is not None:

@@ -7,6 +7,7 @@ import pickle
 import struct
 from typing import IO, Any
 
+from interreflect.study.calibration import Calibration
 from interreflect.study.interface import Image
 from interreflect.study.reference import Reference
 
@@ -49,11 +50,12 @@ class Request:
     truth_wanted: bool  # its pictures too, as the folder lacks them
     code: str  # digest of the parent's package: another one must not measure
     scene: bytes | None = None  # pickled; None: the worker holds it
+    calibration: Calibration | None = None  # of this machine, where an earlier worker of the study made it
 
 
 @dataclasses.dataclass(frozen=True)
 class Phase:
-    """What the worker begins to do: "truth", "prepare", "render" or "metrics"; or what it waits for: its "turn", the parent's "go"."""
+    """What the worker begins to do ("truth", "calibrate", "prepare", "render", "metrics"), or awaits: its "turn", the parent's "go"."""
 
     name: str
 
@@ -65,11 +67,15 @@ class Go:
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class Reply:
-    """changes: fields of the cell's record. pictures, truth: image and indirect light, where the folder keeps them."""
+    """changes: fields of the cell's record. pictures, truth: image and indirect light, where the folder keeps them.
+
+    calibration: of the machine that timed the cell.
+    """
 
     changes: dict[str, Any]
     pictures: Pair | None = None
     truth: Pair | None = None
+    calibration: Calibration | None = None
     interrupted: bool = False
     refused: str = ""  # why nothing can be measured there at all
 

@@ -111,6 +111,8 @@ class Plan:
             raise KeyboardInterrupt
         if reply.refused:
             raise RuntimeError(reply.refused)
+        if reply.calibration is not None:
+            self.writer.calibration(reply.calibration)
         described = self._describe(self.cells[index], self.keys[index])
         warnings = (*described.warnings, *reply.changes.get("warnings", ()))
         record = dataclasses.replace(described, **{**reply.changes, "warnings": warnings})

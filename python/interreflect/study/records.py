@@ -14,6 +14,7 @@ import numpy as np
 if TYPE_CHECKING:
     import pandas as pd
 
+    from interreflect.study.calibration import Calibration
     from interreflect.study.interface import Image
 
 OK, FAILED, NOT_FINITE = "ok", "failed", "not finite"
@@ -24,12 +25,14 @@ METRICS = (
 )  # fmt: skip
 FIXED = (
     "scene", "camera", "bounces", "method", "seed", "status", "failure",
-    "milliseconds", "milliseconds_p95", "precompute_milliseconds", "peak_memory_bytes", *METRICS, "noise", "indirect_noise",
+    "milliseconds", "milliseconds_low", "milliseconds_high", "milliseconds_p95", "contended", "others_share",
+    "precompute_milliseconds", "peak_memory_bytes", "calibration", "limit_milliseconds", "limit_ratio", *METRICS, "noise", "indirect_noise",
     "width", "height", "threads", "repeats", "truth_spp", "scene_hash", "processor", "compiler", "commit", "warnings", "key",
 )  # fmt: skip
 # Columns (beside `stage.<name>.milliseconds`) that differ when the same cell is measured again.
 OF_THE_MOMENT = (
-    "milliseconds", "milliseconds_p95", "precompute_milliseconds", "peak_memory_bytes", "repeats",
+    "milliseconds", "milliseconds_low", "milliseconds_high", "milliseconds_p95", "contended", "others_share", "precompute_milliseconds",
+    "peak_memory_bytes", "calibration", "limit_milliseconds", "limit_ratio", "repeats",
 )  # fmt: skip
 
 
@@ -53,8 +56,14 @@ class Record:
     failure: str = ""
     repeats: int = 0
     milliseconds: float = math.nan
+    milliseconds_low: float = math.nan  # 95 % interval of the median
+    milliseconds_high: float = math.nan
     milliseconds_p95: float = math.nan
+    times: tuple[float, ...] = ()  # milliseconds of every repeat, in order
+    contended: bool = False  # others used the processors meanwhile, also when it was timed again
+    others_share: float = math.nan  # of the processors
     precompute_milliseconds: float = math.nan
+    calibration: str = ""  # key of what the machine was measured to do, in the study's folder
     peak_memory_bytes: float = math.nan  # of the worker while it prepared and rendered, above an idle one's
     limits: Mapping[str, float] = dataclasses.field(default_factory=dict)  # timeout or memory, where the cell passed it
     metrics: Mapping[str, float] = dataclasses.field(default_factory=dict)
@@ -74,7 +83,7 @@ class Record:
     def from_content(content: Mapping[str, Any]) -> Record:
         """The inverse of `as_content`."""
         values = {name: _restored(value) for name, value in content.items()}
-        values["size"], values["warnings"] = tuple(values["size"]), tuple(values["warnings"])
+        values |= {name: tuple(values[name]) for name in ("size", "warnings", "times")}
         return Record(**values)
 
     @property
@@ -82,13 +91,15 @@ class Record:
         """The method and its knobs in one line."""
         return f"{self.method}({', '.join(f'{name}={value}' for name, value in self.knobs.items())})"
 
-    def row(self) -> dict[str, Any]:
-        """The record as a row of the table."""
+    def row(self, calibration: Calibration | None = None) -> dict[str, Any]:
+        """The record as a row of the table. calibration: of its machine."""
         fixed = {name: getattr(self, name) for name in FIXED if hasattr(self, name)}
         fixed |= {"width": self.size[0], "height": self.size[1], "bounces": ALL_BOUNCES if self.bounces is None else self.bounces}
         fixed |= {name: self.machine.get(name, "") for name in ("processor", "compiler", "commit")}
         fixed |= {name: self.metrics.get(name, math.nan) for name in METRICS}
         fixed["warnings"] = "; ".join(self.warnings)
+        limit = math.nan if calibration is None else calibration.limit_milliseconds(self.stages)
+        fixed |= {"limit_milliseconds": limit, "limit_ratio": self.milliseconds / limit}
         knobs = {knob_column(name): value for name, value in self.knobs.items()}
         measured: dict[str, Any] = {}
         for name, stage in self.stages.items():
@@ -112,13 +123,18 @@ class Records(Sequence[Record]):
     folder: Path
     missing: int = 0
     damaged: tuple[str, ...] = ()
+    calibrations: Mapping[str, Calibration] = dataclasses.field(default_factory=dict)  # what the machines can do
 
     @cached_property
     def table(self) -> pd.DataFrame:
-        """A row per cell (scene x camera x method x seed); columns: what was measured, knob paths, `stage.<name>.<what>`."""
+        """A row per cell (scene x camera x method x seed); columns: what was measured, knob paths, `stage.<name>.<what>`.
+
+        limit_milliseconds: what the record's machine needs at full speed for the work that was counted; limit_ratio: `milliseconds`
+        as a multiple of it, which compares between machines. NaN where no work was counted or the calibration is not there.
+        """
         import pandas as pd
 
-        rows = [record.row() for record in self.records]
+        rows = [record.row(self.calibrations.get(record.calibration)) for record in self.records]
         columns = dict.fromkeys([*FIXED, *(name for row in rows for name in row)])
         return pd.DataFrame(rows, columns=list(columns))
 

@@ -4,18 +4,22 @@
     cells/<key>.json   a record, with format version and checksum
     images/<key>.npz   image and indirect light of a cell (the archive checks itself when read)
     truths/<key>.npz   the truths of the cells
+    calibrations/<key>.json   what the machines that timed them can do
 
 Cells are keyed by everything that determines them, so a changed study finds again what it shares with an earlier one.
 """
 
 from __future__ import annotations
 
+import dataclasses
 import zipfile
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from interreflect.study.calibration import Calibration
 from interreflect.study.files import DamagedFile, read_checked, remove_parts, replacing, set_aside, write_checked
 from interreflect.study.messages import Pair
 from interreflect.study.records import Record, Records
@@ -61,6 +65,19 @@ class Store:
     def has_truth(self, key: str) -> bool:
         return self._truth(key).exists()
 
+    def write_calibration(self, calibration: Calibration) -> None:
+        path = self.folder / "calibrations" / f"{calibration.key}.json"
+        if not path.exists():
+            write_checked(path, dataclasses.asdict(calibration), FORMAT)
+
+    def calibrations(self) -> dict[str, Calibration]:
+        """By key; damaged ones are left out."""
+        found = {}
+        for path in (self.folder / "calibrations").glob("*.json"):
+            with suppress(ValueError, TypeError):
+                found[path.stem] = Calibration(**read_checked(path, FORMAT))
+        return found
+
     def load(self) -> Records:
         """The records of the study that ran here last. FileNotFoundError where none did."""
         listed = self.folder / "study.json"
@@ -77,7 +94,7 @@ class Store:
                 missing += 1
             except DamagedFile as error:
                 damaged.append(str(error))
-        return Records(study["name"], tuple(records), self.folder, missing, tuple(damaged))
+        return Records(study["name"], tuple(records), self.folder, missing, tuple(damaged), self.calibrations())
 
     def _cell(self, key: str) -> Path:
         return self.folder / "cells" / f"{key}.json"

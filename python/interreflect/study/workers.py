@@ -22,6 +22,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
+from interreflect.study.calibration import Calibration
 from interreflect.study.memory import resident_bytes
 from interreflect.study.messages import Go, Ready, Reply, Request, Surroundings, receive, send
 from interreflect.study.records import FAILED
@@ -159,6 +160,7 @@ class Crew:
 
     def __init__(self) -> None:
         self._worker: Worker | None = None
+        self._calibration: Calibration | None = None  # once a study, however many workers it takes
 
     def __enter__(self) -> Crew:
         with suppress(IndexError):  # no more of them
@@ -196,9 +198,10 @@ class Crew:
 
     def _try(self, request: Request, scene: Callable[[], bytes], limits: Limits, show: Callable[[str], None]) -> Reply:
         self._worker = self._worker or Worker()
-        if self._worker.scene != request.scene_hash:
-            request = dataclasses.replace(request, scene=scene())
+        given = None if self._worker.scene == request.scene_hash else scene()
+        request = dataclasses.replace(request, scene=given, calibration=self._calibration)
         reply = self._worker.measure(request, limits, show)
+        self._calibration = reply.calibration or self._calibration
         if text := self._worker.printed():
             from tqdm import tqdm
 

@@ -6,6 +6,7 @@ from collections import deque
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor, wait
 
+from interreflect.study.calibration import Calibration
 from interreflect.study.messages import Pair
 from interreflect.study.records import Record
 from interreflect.study.store import Store
@@ -36,6 +37,9 @@ class Writer:
             then()
 
         self._pending.append(self._thread.submit(write))
+
+    def calibration(self, calibration: Calibration) -> None:
+        self._pending.append(self._thread.submit(self._store.write_calibration, calibration))
 
     def settle(self) -> None:
         """Return once nothing is being written any more."""

@@ -1,15 +1,15 @@
-#include "bench/throughput.h"
+#include "math/throughput.h"
 
 #include <hwy/cache_control.h>
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "bench/throughput.cpp"
+#define HWY_TARGET_INCLUDE "math/throughput.cpp"
 #include <hwy/foreach_target.h>
 // The kernels below are compiled once for each vector width.
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace interreflect::bench::HWY_NAMESPACE {
+namespace interreflect::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 float sum(const float* values, std::size_t count) {
@@ -51,7 +51,7 @@ float multiply_add(std::size_t steps) {
 
 int width() { return static_cast<int>(hn::Lanes(hn::ScalableTag<float>()) * sizeof(float)); }
 
-}  // namespace interreflect::bench::HWY_NAMESPACE
+}  // namespace interreflect::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
@@ -62,9 +62,9 @@ HWY_AFTER_NAMESPACE();
 #include <algorithm>
 #include <atomic>
 
-#include "bench/stopwatch.h"
+#include "math/stopwatch.h"
 
-namespace interreflect::bench {
+namespace interreflect {
 namespace {
 
 HWY_EXPORT(sum);
@@ -72,8 +72,7 @@ HWY_EXPORT(triad);
 HWY_EXPORT(multiply_add);
 HWY_EXPORT(width);
 
-constexpr std::size_t floats = std::size_t{1} << 26;  // 256 MiB: eight times a large last-level cache
-constexpr std::size_t piece = std::size_t{1} << 18;   // 1 MiB a task
+constexpr std::size_t piece = std::size_t{1} << 18;  // 1 MiB a task
 
 /// Least milliseconds of `repeats` calls, after one that maps the pages.
 template <class Work>
@@ -88,7 +87,7 @@ double fastest(int repeats, const Work& work) {
     return best;
 }
 
-auto filled() {
+auto filled(std::size_t floats) {
     auto array = hwy::AllocateAligned<float>(floats);
     oneapi::tbb::parallel_for(std::size_t{0}, floats / piece,
                               [&](std::size_t p) { std::fill_n(array.get() + p * piece, piece, 1.0f); });
@@ -99,23 +98,23 @@ std::atomic<float> sink;  // keeps results alive
 
 }  // namespace
 
-double read_bandwidth(int repeats) {
-    const auto array = filled();
+double read_bandwidth(int repeats, std::size_t floats) {
+    const auto array = filled(floats);
     const double best = fastest(repeats, [&] {
         oneapi::tbb::parallel_for(std::size_t{0}, floats / piece,
                                   [&](std::size_t p) { sink = HWY_DYNAMIC_DISPATCH(sum)(array.get() + p * piece, piece); });
     });
-    return 4.0 * floats / best * 1e-6;
+    return 4.0 * static_cast<double>(floats) / best * 1e-6;
 }
 
-double triad_bandwidth(int repeats) {
-    const auto a = filled(), b = filled(), c = filled();
+double triad_bandwidth(int repeats, std::size_t floats) {
+    const auto a = filled(floats), b = filled(floats), c = filled(floats);
     const double best = fastest(repeats, [&] {
         oneapi::tbb::parallel_for(std::size_t{0}, floats / piece, [&](std::size_t p) {
             HWY_DYNAMIC_DISPATCH(triad)(a.get() + p * piece, b.get() + p * piece, c.get() + p * piece, piece);
         });
     });
-    return 3 * 4.0 * floats / best * 1e-6;
+    return 3 * 4.0 * static_cast<double>(floats) / best * 1e-6;
 }
 
 double multiply_add_rate(int repeats) {
@@ -128,5 +127,5 @@ double multiply_add_rate(int repeats) {
 
 int vector_bytes() { return HWY_DYNAMIC_DISPATCH(width)(); }
 
-}  // namespace interreflect::bench
+}  // namespace interreflect
 #endif

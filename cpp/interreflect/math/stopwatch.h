@@ -2,7 +2,7 @@
 #pragma once
 #include <chrono>
 
-namespace interreflect::bench {
+namespace interreflect {
 
 class Stopwatch {
   public:
@@ -14,4 +14,4 @@ class Stopwatch {
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-}  // namespace interreflect::bench
+}  // namespace interreflect
