@@ -8,6 +8,7 @@
 #include "math/parallel.h"
 #include "math/rng.h"
 #include "math/sampling.h"
+#include "shading/emitter_batch.h"
 
 namespace interreflect {
 namespace {
@@ -134,15 +135,22 @@ class Lighting {
         return {grid_.domain.coordinates(grid_.cell[order_[k]]), seed_, purpose};
     }
     void emitters(int s) {
-        for (std::size_t k = 0; k < order_.size(); ++k) {
-            const vec3 u = samples_of(k, 0).at(s, technique_.samples);
-            for (unsigned side = 0; side < sides(); ++side) {
-                const auto light = lights_.sample_emitter(at(k, side).position, u.x, {u.y, u.z});
-                if (light.pdf > 0.0f)
-                    queue(k, side, light.direction, light.distance,
-                          light.radiance / (light.pdf * static_cast<float>(technique_.samples)));
+        const float share = 1.0f / static_cast<float>(technique_.samples);
+        EmitterBatch batch;
+        for (unsigned side = 0; side < sides(); ++side)
+            for (std::size_t begin = 0; begin < order_.size(); begin += EmitterBatch::width) {
+                const std::size_t end = std::min(begin + EmitterBatch::width, order_.size());
+                batch.count = 0;
+                for (std::size_t k = begin; k < end; ++k) {
+                    const vec3 u = samples_of(k, 0).at(s, technique_.samples);
+                    batch.add(at(k, side).position, u.x, {u.y, u.z});
+                }
+                sample_emitters(lights_, batch);
+                for (std::size_t k = begin; k < end; ++k) {
+                    const LightDirection& light = batch.light[k - begin];
+                    if (light.pdf > 0.0f) queue(k, side, light.direction, light.distance, light.radiance * (share / light.pdf));
+                }
             }
-        }
         trace(false);
     }
     /// Constant: directions by cosine. An image: directions by its luminance, over the whole sphere.
