@@ -30,6 +30,7 @@ _HOMES = {
     **dict.fromkeys(("pareto", "hypervolume", "knee", "inefficiency", "cheapest", "best", "equal_time", "equal_error"), "study.pareto"),
     "attribute": "study.attribution",
     "ladder": "study.ladder",
+    "search": "study.search",
     "report": "study.report",
     "about": "machine",  # not a module of that name: importing it would put the module in the function's place
 }
@@ -111,6 +112,7 @@ if TYPE_CHECKING:
     from interreflect.study.reference import reference as reference
     from interreflect.study.report import report as report
     from interreflect.study.run import run as run
+    from interreflect.study.search import search as search
     from interreflect.study.store import load_records as load_records
     from interreflect.study.study import Study as Study
     from interreflect.study.study import sweep as sweep

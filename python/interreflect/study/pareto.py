@@ -18,6 +18,8 @@ from interreflect.study.records import Records
 if TYPE_CHECKING:
     import pandas as pd
 
+    from interreflect.study.study import Study
+
 TIMES = ("milliseconds", "milliseconds_p95", "precompute_milliseconds")
 WITHIN_NOISE = "within noise"
 REFERENCE_POINT = (1e4, 1.0)  # 10 s a frame and an error of 1: what no front is worth beyond; fixed, so that areas compare
@@ -40,20 +42,26 @@ def pareto(records: Records, x: str = "milliseconds", y: str = "relmse") -> pd.D
     return _joined(fronts, records)
 
 
-def cheapest(records: Records, **bound: float) -> pd.DataFrame:
+def cheapest(records: Records | Study, trials: int = 32, options: Mapping[str, Any] | None = None, **bound: float) -> pd.DataFrame:
     """The fastest configuration whose errors keep within bounds, e.g. `relmse=.01, flip=.1`, per scene, camera and bounces.
 
+    Of records, or of a study's methods with their knobs searched (`ir.search` with so many trials and these options).
     A view where none does has no row. `note` says "within noise" where the truth's noise exceeds the bound or the distance to it.
     """
     limits = _bounds("cheapest", bound)
+    records = _found(records, trials, {"relmse": limits.get("relmse", np.inf)} | dict(options or {}))
     return _joined([_fastest(view, limits) for view in _views(records, "milliseconds", *limits)], records)
 
 
-def best(records: Records, milliseconds: float, y: str = "relmse") -> pd.DataFrame:
+def best(
+    records: Records | Study, milliseconds: float, y: str = "relmse", trials: int = 32, options: Mapping[str, Any] | None = None
+) -> pd.DataFrame:
     """The most accurate configuration within a time budget, per scene, camera and bounces.
 
+    Of records, or of a study's methods with their knobs searched (`ir.search` with so many trials and these options).
     `note` says "within noise" where the runner-up's error differs by no more than the truth's noise.
     """
+    records = _found(records, trials, {"milliseconds": milliseconds} | dict(options or {}))
     return _joined([_most_accurate(view, milliseconds, y) for view in _views(records, "milliseconds", y)], records)
 
 
@@ -133,6 +141,15 @@ def inefficiency(records: Records, x: str = "milliseconds", y: str = "relmse") -
         order = view.assign(inefficiency=product, inefficiency_low=low, inefficiency_high=high).sort_values("inefficiency", kind="stable")
         ranked.append(_noted(order, y, order.head(0).reindex(order.index)))
     return _joined(ranked, records)
+
+
+def _found(source: Records | Study, trials: int, options: Mapping[str, Any]) -> Records:
+    """Records as they are; of a study, those of a search."""
+    if isinstance(source, Records):
+        return source
+    from interreflect.study.search import search
+
+    return search(source, trials=trials, **options).records
 
 
 def _fastest(view: pd.DataFrame, limits: Mapping[str, float]) -> pd.DataFrame:
