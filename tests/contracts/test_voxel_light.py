@@ -155,7 +155,7 @@ def test_a_uniform_world_stays_uniform(coverage):
     pyramid = ir.prefilter(coverage, lit_of(ir.TracedLighting(both_sides=True), scene, 32))
     for i in range(pyramid.levels):
         for face in range(pyramid.faces):
-            if (face & 2 if pyramid.faces == 8 else face == 2):
+            if face & 2 if pyramid.faces == 8 else face == 2:
                 continue  # from below one sees the sheet's back, which has no light
             level = pyramid.level(i, face)
             seen = level[..., 3] > 0

@@ -11,6 +11,7 @@ import numpy as np
 
 from interreflect.frame import Frame, Image
 from interreflect.scenes.scene import Scene
+from interreflect.stability.not_finite import NotFinite
 from interreflect.study.reference import Reference, Truth, reference
 
 TRUTH = Reference(noise=1e-4, max_spp=4096)  # of the small pictures that failures look at
@@ -51,6 +52,8 @@ class Trial:
         """The method's frame: of the failure's camera and scene unless others are named."""
         shown = self.scene if scene is None else scene
         frame: Frame = self.method.prepare(shown, threads=self.threads).render(camera or self.camera, size=self.size, seed=self.seed)
+        if not (np.isfinite(frame.image).all() and np.isfinite(frame.indirect).all()):
+            raise NotFinite("the picture holds numbers that are not finite", frame.image)
         return frame
 
     def truth(self, camera: str | None = None) -> Truth:
@@ -94,10 +97,10 @@ class Failure:
 
     def read(self, method: Any, value: float, seed: int = 0, threads: int | None = None) -> Reading:
         """The error of a method at one value of the knob; infinite where its picture holds numbers that are not finite."""
-        reading = self.measure(Trial(method, self.scene, value, self.camera, self.size, seed, threads))
-        if np.isfinite(reading.image).all() and math.isfinite(reading.error):
-            return reading
-        return dataclasses.replace(reading, error=math.inf, signed=math.nan, image=np.nan_to_num(reading.image))
+        try:
+            return self.measure(Trial(method, self.scene, value, self.camera, self.size, seed, threads))
+        except NotFinite as wrong:
+            return Reading(math.inf, np.nan_to_num(wrong.image))
 
     def values(self, count: int) -> list[float]:
         """`count` values from the easy end to the hard one."""

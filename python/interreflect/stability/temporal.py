@@ -15,6 +15,7 @@ from interreflect.frame import Image
 from interreflect.motion import Motion
 from interreflect.scenes.camera import Camera
 from interreflect.scenes.scene import Scene
+from interreflect.stability.not_finite import NotFinite
 from interreflect.stability.reprojection import Origin, Surfaces, origin, surfaces
 from interreflect.stability.response import StepResponse, response
 from interreflect.study.reference import Reference, Truth, reference
@@ -186,7 +187,7 @@ def motion(
     """Plays a motion with a method, history passed on, and compares every frame with its own truth of the method's bounces.
 
     reference: how good each frame's truth must be; truths are kept in the cache folder. pop: share of the mean radiance.
-    ValueError where the scene lacks what moves.
+    ValueError where the scene lacks what moves, and for a frame with numbers that are not finite.
     """
     return compare(list(method.prepare(scene, threads).play(motion, size, seed)), method, scene, motion, size, reference, pop)
 
@@ -194,9 +195,12 @@ def motion(
 def compare(
     frames: Sequence[Any], method: Any, scene: Scene, motion: Motion, size: tuple[int, int], wanted: Reference = SAMPLES, pop: float = POP
 ) -> Played:
-    """Frames of a motion that were rendered already, beside the truth."""
+    """Frames of a motion that were rendered already, beside the truth. NotFinite, a ValueError, for a picture with such numbers."""
     from tqdm import tqdm
 
+    for k, frame in enumerate(frames):
+        if wrong := int(frame.image.size - np.isfinite(frame.image).sum()):
+            raise NotFinite(f"frame {k} holds {wrong} numbers that are not finite", frame.image)
     views = [motion.at(scene, k) for k in range(motion.frames)]
     with tqdm(views, desc="truths", unit="frame", disable=None, leave=False) as progress:
         truths = [frame_truth(moved, camera, size, method.bounces, wanted) for moved, camera in progress]
