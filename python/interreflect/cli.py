@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -85,6 +87,9 @@ def render(
 def study(
     file: Annotated[Path, typer.Argument(help="a Python file that defines `study`")],
     out: Annotated[Path, typer.Option(help="the folder of the records; a study that stopped goes on there")],
+    timeout: Annotated[float | None, typer.Option(help="seconds that a cell may take, its truth apart")] = None,
+    memory: Annotated[float | None, typer.Option(help="MiB that a cell may hold")] = None,
+    dask: Annotated[str | None, typer.Option(help="a Dask scheduler whose hosts measure the cells, e.g. tcp://10.0.0.1:8786")] = None,
 ) -> None:
     """Measure a study: every cell that its folder does not hold yet."""
     from interreflect.catalogue import load_study
@@ -93,7 +98,9 @@ def study(
     from interreflect.study.records import OK
     from interreflect.study.run import run
 
-    records = run(load_study(file), out)
+    wanted = load_study(file)
+    with _cluster(dask) as client:
+        records = run(wanted, out, timeout=timeout, memory=None if memory is None else memory * 2**20, client=client)
     failed = [record for record in records if record.status != OK]
     front = pareto(records)
     columns = ["scene", "camera", "bounces", "milliseconds", "relmse", "note"]
@@ -102,6 +109,18 @@ def study(
     for record in failed:
         print(f"{record.status}: {record.scene}, {record.configuration}, seed {record.seed}: {record.failure}", file=sys.stderr)
     print(f"{len(records)} cells in {out}, {len(failed)} failed")
+
+
+@contextmanager
+def _cluster(address: str | None) -> Iterator[Any]:
+    """A client of the scheduler there; None without an address. ImportError without the extra, OSError where nobody answers."""
+    if address is None:
+        yield None
+        return
+    from interreflect.study.dask import connect
+
+    with connect(address) as client:
+        yield client
 
 
 @app.command()

@@ -84,8 +84,8 @@ class FakePrepared:
 
     def render(self, camera=None, size=None, seed=0, threads=None):
         note_render()
-        if self.method.mode in DISASTERS:
-            DISASTERS[self.method.mode]()
+        if self.method.mode in DEEDS:
+            DEEDS[self.method.mode]()
         if self.method.mode == "raises":
             raise RuntimeError("lamp broken")
         direct, indirect = truth_of(self.scene, size)
@@ -164,12 +164,22 @@ def eat_memory_briefly():
     np.ones(2**28, np.uint8)
 
 
-DISASTERS = {
+def take_time():
+    """A while, noted with its begin and end."""
+    begin = time.monotonic()
+    time.sleep(0.2)
+    if "STUDY_FAKES_SPANS" in os.environ:
+        with open(os.environ["STUDY_FAKES_SPANS"], "a") as file:
+            file.write(f"{begin} {time.monotonic()}\n")
+
+
+DEEDS = {
     "crashes": lambda: os.kill(os.getpid(), signal.SIGSEGV),
     "is killed": lambda: os.kill(os.getpid(), signal.SIGKILL),
     "leaves": lambda: os._exit(3),
     "hangs": lambda: time.sleep(600),
     "eats memory": eat_memory,
     "eats memory briefly": eat_memory_briefly,
+    "takes its time": take_time,
     "prints": lambda: print("a word from a method"),
 }

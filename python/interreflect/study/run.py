@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from interreflect.scenes.checks import number
+from interreflect.study.dask import check_client, measure_on
 from interreflect.study.plan import Plan
 from interreflect.study.records import Records
 from interreflect.study.store import load_records
@@ -21,15 +22,18 @@ def run(study: Study, folder: str | Path, timeout: float | None = None, memory: 
     """Measure a study into a folder, one file per cell, and return its records.
 
     What the folder holds already is not measured again: a study that was interrupted or killed resumes, and runs on one folder
-    share the work. Cells are measured in a worker process, one after the other. A method that raises, crashes, takes longer than
+    share the work. Cells are measured in a worker process, one after the other; with a `distributed.Client` on the hosts of its
+    cluster, timed ones alone on a host, untimed ones (`repeats=0`) side by side. A method that raises, crashes, takes longer than
     `timeout` seconds (its truth apart) or more than `memory` bytes, and a picture with numbers that are not finite, are rows of
-    the table that say so; a cell that failed for a limit is tried again under a wider one. ValueError for limits that are not
-    above 0; OSError for a folder that cannot be written or a full disk; RuntimeError where no worker process starts.
+    the table that say so; a cell that failed for a limit is tried again under a wider one.
+
+    ValueError for limits that are not above 0, TypeError for a client that is none; OSError for a folder that cannot be written or
+    a full disk; RuntimeError where no worker process starts.
     """
     if client is not None:
-        raise ValueError(f"run: client must be None, got {client!r}")
+        check_client(client)
     with Plan(study, Path(folder), _limits(timeout, memory)) as plan:
-        _measure_here(plan)
+        _measure_here(plan) if client is None else measure_on(client, plan)
     return load_records(folder)
 
 
