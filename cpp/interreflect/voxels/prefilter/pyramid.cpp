@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <stdexcept>
@@ -28,13 +29,18 @@ Pyramid make_levels(const Domain& domain, int faces) {
 }
 
 float radiance_scale(const LitVoxels& lit) {
-    float largest = 0.0f;
-    for (const Buffer<vec3>* side : {&lit.radiance, &lit.back})
-        for (const vec3& radiance : *side) {
-            const float sum = radiance.x + radiance.y + radiance.z;
-            if (!std::isfinite(sum)) throw std::invalid_argument("prefilter: a voxel's radiance is not finite");
-            largest = std::max({largest, radiance.x, radiance.y, radiance.z});
+    // Floats that are not negative are ordered as their bits are, which compilers compare many at a time.
+    std::int32_t most = 0, size = 0;
+    for (const Buffer<vec3>* side : {&lit.radiance, &lit.back}) {
+        const float* values = floats(*side);
+        for (std::size_t i = 0; i < 3 * side->size(); ++i) {
+            const auto bits = std::bit_cast<std::int32_t>(values[i]);
+            most = std::max(most, bits);
+            size = std::max(size, bits & 0x7fffffff);
         }
+    }
+    if (size >= 0x7f800000) throw std::invalid_argument("prefilter: a voxel's radiance is not finite");
+    const auto largest = std::bit_cast<float>(most);
     if (!(largest > 0.0f)) return 1.0f;
     // Twice 2^-14 below the least float: its inverse must stay finite.
     return std::ldexp(1.0f, std::clamp(std::ilogb(largest), -110, 127) - 14);
