@@ -31,6 +31,9 @@ _HOMES = {
     "attribute": "study.attribution",
     "ladder": "study.ladder",
     "search": "study.search",
+    "sensitivity": "study.sensitivity",
+    "marginal": "study.marginal",
+    "advise": "study.advise",
     "report": "study.report",
     "about": "machine",  # not a module of that name: importing it would put the module in the function's place
 }
@@ -97,8 +100,10 @@ if TYPE_CHECKING:
     from interreflect.stages import techniques as techniques
     from interreflect.stages import trace_gbuffer as trace_gbuffer
     from interreflect.stages import voxelize as voxelize
+    from interreflect.study.advise import advise as advise
     from interreflect.study.attribution import attribute as attribute
     from interreflect.study.ladder import ladder as ladder
+    from interreflect.study.marginal import marginal as marginal
     from interreflect.study.pareto import best as best
     from interreflect.study.pareto import cheapest as cheapest
     from interreflect.study.pareto import equal_error as equal_error
@@ -113,6 +118,7 @@ if TYPE_CHECKING:
     from interreflect.study.report import report as report
     from interreflect.study.run import run as run
     from interreflect.study.search import search as search
+    from interreflect.study.sensitivity import sensitivity as sensitivity
     from interreflect.study.store import load_records as load_records
     from interreflect.study.study import Study as Study
     from interreflect.study.study import sweep as sweep

@@ -97,9 +97,7 @@ class _View:
         side: tuple[int, int] = (study.size[0] // SMALLER, study.size[1] // SMALLER)
         small = dataclasses.replace(Reference(), noise=max(SMALL_NOISE, study.reference.noise), max_spp=study.reference.max_spp)
         self.small = (
-            dataclasses.replace(
-                self.study, size=tuple(side), seeds=[study.seeds[0]], repeats=1, max_repeats=3, images=False, reference=small
-            )
+            dataclasses.replace(self.study, size=side, seeds=study.seeds[:1], repeats=1, max_repeats=3, images=False, reference=small)
             if min(side) >= LEAST_SIDE
             else None
         )
