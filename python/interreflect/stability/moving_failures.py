@@ -129,7 +129,7 @@ MOVING = (
     Failure(
         name="scene moved away",
         knob="distance of the scene from the origin",
-        unit="extents",
+        unit="extents away",
         easy=1.0,
         hard=1e5,
         scene=lambda distance: similar(_room(0), shift=(2 * distance, -2 * distance, 2 * distance)),  # the room is 2 wide
