@@ -24,12 +24,13 @@ if TYPE_CHECKING:
 
 STYLE = """<style>
 .atlas td, .atlas th { vertical-align: top; white-space: normal; }
-.atlas td { min-width: 150px; } .atlas th.row { min-width: 190px; max-width: 240px; font-weight: normal; text-align: left; }
+.atlas td { min-width: 150px; } .atlas th.row { min-width: 190px; max-width: 260px; font-weight: normal; text-align: left; }
 .atlas small { color: var(--faint); display: block; }
 .atlas .shots { display: flex; gap: 4px; margin-top: 4px; }
 .atlas .shots figure { width: 72px; } .atlas .shots img { width: 72px; image-rendering: pixelated; }
 .atlas svg { display: block; margin-top: 4px; }
 .breaks { color: #d55e00; font-weight: 600; } .never { color: #009e73; font-weight: 600; } .always { color: #b3004b; font-weight: 600; }
+.waiting th.row { max-width: none; }
 .waits, .failed { color: var(--faint); }
 </style>"""
 WIDTH, HEIGHT = 150, 56
@@ -47,7 +48,7 @@ def page(atlas: Atlas) -> str:
         for title, draw in (("Break points", atlas.chart), ("Leak against over-occlusion", atlas.leak_against_occlusion))
         if (figure := _drawn(draw)) is not None
     )
-    body = f"{STYLE}{words}{_grid(atlas)}{charts}"
+    body = f"{STYLE}{words}{_grid(atlas)}{_waiting(atlas)}{charts}"
     return PAGE.replace("{title}", "Where does it break?").replace("{body}", body)
 
 
@@ -62,11 +63,21 @@ def _grid(atlas: Atlas) -> str:
     head = "".join(f"<th>{escape(name)}</th>" for name in atlas.methods)
     rows = []
     for name, row in atlas.failures.items():
+        if row.waits:
+            continue
         cells = "".join(f"<td>{_cell(atlas.cell(method, name))}</td>" for method in atlas.methods)
         rows.append(f'<tr><th class="row">{_about(row)}</th>{cells}</tr>')
     return (
         f'<div class="wide"><table class="atlas"><thead><tr><th>failure</th>{head}</tr></thead><tbody>{"".join(rows)}</tbody></table></div>'
     )
+
+
+def _waiting(atlas: Atlas) -> str:
+    """Failures of stages that do not exist yet: what they will sweep, and what they wait for."""
+    rows = [row for row in atlas.failures.values() if row.waits]
+    lines = "".join(f'<tr><th class="row">{_about(row)}</th><td class="waits">{escape(row.waits)}</td></tr>' for row in rows)
+    title = "<h2>Failures that wait for their stage</h2>"
+    return f'{title}<div class="wide"><table class="atlas waiting">{lines}</table></div>' if rows else ""
 
 
 def _about(row: Failure) -> str:
