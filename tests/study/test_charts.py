@@ -1,52 +1,21 @@
-"""Charts and reports of studies with fake methods: they show what the records hold and render nothing."""
-
-import dataclasses
-from html.parser import HTMLParser
+"""Charts of studies with fake methods: they show what the records hold and render nothing."""
 
 import numpy as np
 import pytest
+from charted import measure
 from study_fakes import Fake, Scene
 
 from interreflect import charts, metrics
 from interreflect.study.configurations import configurations
 from interreflect.study.pareto import pareto
-from interreflect.study.report import report
 from interreflect.study.run import run
-from interreflect.study.store import load_records
-from interreflect.study.study import Study, sweep
-
-
-class Rival(Fake):
-    """The same under another name."""
-
-    name = "rival"
-
-
-METHODS = [
-    *sweep(Fake, {"error": [0.1, 0.4]}),
-    Rival(error=0.2, time=0.5),
-    Rival(error=0.05, time=9.0),
-    Fake(mode="raises"),
-    Fake(mode="nan"),
-]
+from interreflect.study.study import Study
 
 
 @pytest.fixture(scope="module")
 def records(tmp_path_factory):
-    import study_fakes
-
-    folder = tmp_path_factory.mktemp("study")
     with pytest.MonkeyPatch.context() as patch:
-        patch.setenv(study_fakes.TRUTH, "1")
-        patch.setenv("INTERREFLECT_CACHE", str(folder / "cache"))
-        scenes = [Scene(), Scene("<bright & wide>", 3.0)]
-        run(Study(name="a < b?", scenes=scenes, methods=METHODS, size=(24, 16), repeats=1), folder / "r")
-    return load_records(folder / "r")
-
-
-@pytest.fixture(scope="module")
-def page(records, tmp_path_factory):
-    return report(records, tmp_path_factory.mktemp("page") / "report.html").read_text()
+        return measure(tmp_path_factory.mktemp("study"), patch)
 
 
 def points(axes):
@@ -110,52 +79,3 @@ def test_a_study_without_a_measured_cell_says_so_instead_of_drawing(tmp_path, fa
     for draw in (charts.speed_accuracy, charts.stages, charts.images):
         with pytest.raises(ValueError, match="no "):
             draw(failed)
-    page = report(failed, tmp_path / "page.html").read_text()
-    assert "RuntimeError: lamp broken" in page
-
-
-class Page(HTMLParser):
-    """Collects what a page refers to, and whether its tags are balanced."""
-
-    def __init__(self):
-        super().__init__()
-        self.open, self.links, self.rows = [], [], 0
-
-    def handle_starttag(self, tag, attributes):
-        self.rows += tag == "tr"
-        self.links += [value for name, value in attributes if name in ("src", "href", "srcset")]
-        if tag not in ("meta", "img", "source", "br"):
-            self.open.append(tag)
-
-    def handle_endtag(self, tag):
-        assert self.open.pop() == tag
-
-
-def test_the_report_is_one_page_that_loads_nothing_from_elsewhere(page):
-    seen = Page()
-    seen.feed(page)
-    assert seen.open == []
-    assert seen.links
-    assert all(link.startswith("data:image/png;base64,") for link in seen.links)
-    assert "url(" not in page
-    assert "prefers-color-scheme: dark" in page
-
-
-def test_the_report_escapes_what_records_say(page):
-    assert "a &lt; b?" in page
-    assert "&lt;bright &amp; wide&gt;" in page
-    assert "<bright" not in page
-
-
-def test_the_report_holds_every_configuration_and_failure(records, page):
-    assert "lamp broken" in page
-    assert "numbers of the picture are not finite" in page
-    for value in configurations(records)["relmse"]:
-        assert f'data-value="{float(value)!r}"' in page
-
-
-def test_the_report_warns_of_missing_and_damaged_cells(records, tmp_path):
-    partial = dataclasses.replace(records, missing=3, damaged=("cells/x.json: torn",))
-    text = report(partial, tmp_path / "report.html").read_text()
-    assert "3 cells are not measured yet" in text
-    assert "cells/x.json: torn" in text

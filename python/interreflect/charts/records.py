@@ -11,7 +11,7 @@ import numpy as np
 
 from interreflect import metrics
 from interreflect.charts.style import COLOURS, MARKERS, add_legend, dress, new_figure, theme_of
-from interreflect.study.configurations import MERIT, NOISE_OF, VIEW, configurations
+from interreflect.study.configurations import MERIT, NOISE_OF, VIEW, WORK, configurations
 from interreflect.study.pareto import pareto
 from interreflect.study.records import OK, Record, Records
 
@@ -24,6 +24,8 @@ LABELS = {
     "milliseconds": "time per frame, ms (median)",
     "milliseconds_p95": "time per frame, ms (95th percentile)",
     "precompute_milliseconds": "precomputation, ms",
+    "bytes": "memory of the stages' results, bytes",
+    "peak_memory_bytes": "peak memory of the process, bytes",
     "relmse": "relMSE",
     "trimmed_relmse": "relMSE without the largest .1 %",
     "indirect_relmse": "relMSE of indirect light",
@@ -64,7 +66,7 @@ def speed_accuracy(records: Records, x: str = "milliseconds", y: str = "relmse",
         _noise_band(ax, rows, y, dark)
         _few_ticks(ax, y != MERIT)
         ax.set_title(view_title(view), fontsize=9)
-        ax.set(xlabel=LABELS[x], ylabel=LABELS[y])
+        ax.set(xlabel=axis_label(x), ylabel=axis_label(y))
     add_legend(figure, axes, dark)
     return figure
 
@@ -148,6 +150,11 @@ def pictured(records: Records, limit: int) -> list[tuple[tuple[Any, ...], list[R
         picked = [first[(*view, configuration)] for configuration in wanted if (*view, configuration) in first]
         result.append((tuple(view), sorted(picked, key=lambda record: record.milliseconds)))
     return result
+
+
+def axis_label(column: str) -> str:
+    """A measured column as an axis names it, with its unit."""
+    return LABELS.get(column) or f"{column.removeprefix(WORK).replace('_', ' ')} a frame, count"
 
 
 def _error_norm() -> Any:

@@ -15,7 +15,7 @@ from interreflect.frame import Image
 from interreflect.stability.crossing import Crossing, Point
 from interreflect.stability.failure import Failure
 from interreflect.study.page import PAGE
-from interreflect.study.report import _png, _png_of
+from interreflect.study.page.parts import png_of_figure, png_of_image
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -44,7 +44,7 @@ def page(atlas: Atlas) -> str:
         "decades; dashed: the tolerance. Pictures: just before the break point, just after it, and what the latter should be.</p>"
     )
     charts = "".join(
-        f'<h2>{title}</h2><div class="wide"><img src="{_png_of(figure)}" alt="{title}"></div>'
+        f'<h2>{title}</h2><div class="wide"><img src="{png_of_figure(figure)}" alt="{title}"></div>'
         for title, draw in (("Break points", atlas.chart), ("Leak against over-occlusion", atlas.leak_against_occlusion))
         if (figure := _drawn(draw)) is not None
     )
@@ -108,7 +108,8 @@ def _shots(crossing: Crossing) -> str:
     for name, point, wants_truth in shown:
         image = point.truth if wants_truth else point.image
         if image is not None:
-            figures.append(f'<figure><img src="{_png(_exposed(image, point))}" alt="{name}"><figcaption>{name}</figcaption></figure>')
+            source = png_of_image(_exposed(image, point))
+            figures.append(f'<figure><img src="{source}" alt="{name}"><figcaption>{name}</figcaption></figure>')
     return f'<div class="shots">{"".join(figures)}</div>'
 
 
