@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <vector>
 
 #include "math/parallel.h"
 #include "math/rng.h"
@@ -14,82 +13,77 @@ namespace interreflect {
 namespace {
 
 constexpr std::size_t voxels_of_block = 512;
+constexpr float infinity = std::numeric_limits<float>::infinity();
 
-/// Voxels in bricks of 8 x 8 x 8, so that neighbouring rays start near each other.
-std::vector<std::uint32_t> brick_order(const VoxelGrid& grid) {
-    const ivec3 bricks = (grid.domain.cells + 7) / 8;
-    std::vector<std::uint32_t> key(grid.size()), first(static_cast<std::size_t>(bricks.x) * bricks.y * bricks.z + 1);
-    parallel_blocks(grid.size(), 8192, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            const ivec3 at = grid.domain.coordinates(grid.cell[i]) / 8;
-            key[i] = static_cast<std::uint32_t>(at.x + bricks.x * (at.y + bricks.y * at.z));
-        }
-    });
-    for (const auto k : key) ++first[k + 1];
-    for (std::size_t k = 1; k < first.size(); ++k) first[k] += first[k - 1];
-    std::vector<std::uint32_t> order(grid.size());
-    for (std::size_t i = 0; i < key.size(); ++i) order[first[key[i]]++] = static_cast<std::uint32_t>(i);
-    return order;
+/// A fraction of 2^32: sums wrap around as a Kronecker sequence asks for.
+constexpr std::uint32_t fraction(double value) { return static_cast<std::uint32_t>(value * 0x1p32); }
+
+/// Three coordinates of a unit cube, as fractions of 2^32.
+using CubePoint = std::array<std::uint32_t, 3>;
+
+/// Where the samples of all voxels begin.
+CubePoint shift_of(std::uint32_t seed, std::uint32_t purpose) {
+    const std::uint32_t key = hash_combine(seed, purpose);
+    return {hash_combine(key, 0), hash_combine(key, 1), hash_combine(key, 2)};
 }
 
-/// Unit square samples of a voxel: a Kronecker sequence over its coordinates, so that neighbours look in different directions
+/// Unit cube samples of a voxel: a Kronecker sequence over its coordinates, so that neighbours look in different directions
 /// (they are seen together, by cones), shifted by the seed; over its own samples, a rank-1 sequence again.
 struct VoxelSamples {
-    vec3 start{0};
+    CubePoint start;
 
-    VoxelSamples(const ivec3& at, std::uint32_t seed, std::uint32_t purpose) {
-        const std::uint32_t key = hash_combine(seed, purpose);
-        for (int k = 0; k < 3; ++k) {
-            // Roots of x^(d+1) = x + 1 give the steps [Roberts 2018]; nine for three coordinates by three numbers.
-            static constexpr std::array<std::array<double, 3>, 3> steps{{{0.8191725134, 0.6710436067, 0.5497004779},
-                                                                         {0.6180339887, 0.7320508076, 0.2360679775},
-                                                                         {0.4142135624, 0.6457513111, 0.8284271247}}};
-            const double walk = steps[k][0] * at.x + steps[k][1] * at.y + steps[k][2] * at.z;
-            start[k] = static_cast<float>(walk - std::floor(walk)) + unit_float(hash_combine(key, static_cast<std::uint32_t>(k)));
-        }
+    VoxelSamples(const ivec3& at, const CubePoint& shift) {
+        // Roots of x^(d+1) = x + 1 give the steps [Roberts 2018]; nine for three coordinates by three numbers.
+        static constexpr std::uint32_t steps[3][3] = {{fraction(0.8191725134), fraction(0.6710436067), fraction(0.5497004779)},
+                                                      {fraction(0.6180339887), fraction(0.7320508076), fraction(0.2360679775)},
+                                                      {fraction(0.4142135624), fraction(0.6457513111), fraction(0.8284271247)}};
+        const auto x = static_cast<std::uint32_t>(at.x), y = static_cast<std::uint32_t>(at.y),
+                   z = static_cast<std::uint32_t>(at.z);
+        for (std::size_t k = 0; k < 3; ++k) start[k] = steps[k][0] * x + steps[k][1] * y + steps[k][2] * z + shift[k];
     }
     /// Sample i of n: stratified in x, a low-discrepancy set in all three.
     vec3 at(int i, int n) const {
-        const auto k = static_cast<float>(i);
-        return glm::fract(start + vec3(k / static_cast<float>(n), k * 0.7548776662f, k * 0.5698402910f)) * (1.0f - 0x1p-24f);
+        const auto k = static_cast<std::uint32_t>(i);
+        const auto stratum = static_cast<std::uint32_t>((static_cast<std::uint64_t>(k) << 32) / static_cast<std::uint32_t>(n));
+        return {unit_float(start[0] + stratum), unit_float(start[1] + k * fraction(0.7548776662)),
+                unit_float(start[2] + k * fraction(0.5698402910))};
     }
 };
 
-/// A shadow ray on its way, and the irradiance it brings where nothing is in between.
+/// Shadow rays on their way, and the irradiance they bring where nothing is in between.
 struct Batch {
-    std::vector<Ray> rays;
-    std::vector<vec3> irradiance;
-    std::vector<std::uint32_t> target;
-    std::vector<std::uint8_t> blocked;
-
-    void clear() {
-        rays.clear();
-        irradiance.clear();
-        target.clear();
-    }
+    std::size_t count = 0;
+    std::array<Ray, 2 * voxels_of_block> rays;
+    std::array<vec3, 2 * voxels_of_block> irradiance;
+    std::array<std::uint32_t, 2 * voxels_of_block> target;
+    std::array<std::uint8_t, 2 * voxels_of_block> blocked;
 };
 
 class Lighting {
   public:
     Lighting(const TracedLighting& technique, const LightSampler& lights, const Intersector& intersector, const VoxelGrid& grid,
              std::uint32_t seed)
-        : technique_(technique), lights_(lights), intersector_(intersector), grid_(grid), seed_(seed) {}
+        : technique_(technique),
+          lights_(lights),
+          intersector_(intersector),
+          grid_(grid),
+          shifts_{shift_of(seed, 0), shift_of(seed, 1)} {}
 
-    /// Lights the voxels of `order`; irradiance of the front, then of the back.
-    void block(std::span<const std::uint32_t> order, LitVoxels& lit) {
-        order_ = order;
-        irradiance_[0].assign(order.size(), vec3(0));
-        irradiance_[1].assign(order.size(), vec3(0));
+    /// Lights voxels [begin, end).
+    void block(std::size_t begin, std::size_t end, LitVoxels& lit) {
+        first_ = begin;
+        count_ = end - begin;
+        irradiance_[0].fill(vec3(0));
+        irradiance_[1].fill(vec3(0));
         for (int i = 0; i < lights_.delta_count(); ++i) delta(i);
         for (int s = 0; s < technique_.samples; ++s) {
             if (lights_.has_emitters()) emitters(s);
             if (lights_.has_environment()) environment(s);
         }
-        for (std::size_t k = 0; k < order.size(); ++k) {
-            const std::uint32_t voxel = order[k];
-            const vec3 reflectance = grid_.albedo[voxel] * (1.0f / pi);
-            lit.radiance[voxel] = reflectance * irradiance_[0][k];
-            if (technique_.both_sides) lit.back[voxel] = reflectance * irradiance_[1][k];
+        for (std::size_t k = 0; k < count_; ++k) {
+            const vec3 reflectance = grid_.albedo[begin + k] * (1.0f / pi);
+            lit.radiance[begin + k] = reflectance * irradiance_[0][k];
+            if (technique_.both_sides) lit.back[begin + k] = reflectance * irradiance_[1][k];
         }
     }
     std::uint64_t rays() const { return rays_; }
@@ -97,49 +91,48 @@ class Lighting {
   private:
     /// Queues a ray towards a light that would bring `irradiance` to a surface facing it; nothing where the side that faces it is
     /// not lit.
-    void queue(std::size_t k, unsigned side, const vec3& direction, float distance, const vec3& irradiance) {
+    [[gnu::always_inline]] void queue(std::size_t k, unsigned side, const vec3& direction, float distance,
+                                      const vec3& irradiance) {
         const VoxelPoint& point = at(k, side);
         const float cosine = glm::dot(point.normal, direction);
         if (!(cosine > 0.0f) || point.reflects == 0 || !(max_component(irradiance) > 0.0f)) return;
         // Rays end short of an emitter by more than rounding and the offset move either end: it must not shadow its own light.
-        batch_.rays.push_back(
-            {point.position + point.normal * point.offset, 0.0f, direction, distance * 0.9999f - 2.0f * point.offset});
-        batch_.irradiance.push_back(irradiance * cosine);
-        batch_.target.push_back(static_cast<std::uint32_t>(2 * k) + side);
+        batch_.rays[batch_.count] = {point.position + point.normal * point.offset, 0.0f, direction,
+                                     distance * 0.9999f - 2.0f * point.offset};
+        batch_.irradiance[batch_.count] = irradiance * cosine;
+        batch_.target[batch_.count++] = static_cast<std::uint32_t>(2 * k) + side;
     }
-    const VoxelPoint& at(std::size_t k, unsigned side) const { return (side == 0 ? grid_.points : grid_.backs)[order_[k]]; }
+    const VoxelPoint& at(std::size_t k, unsigned side) const { return (side == 0 ? grid_.points : grid_.backs)[first_ + k]; }
     unsigned sides() const { return technique_.both_sides ? 2 : 1; }
-    void trace(bool coherent) {
+    void trace() {
         if (oneapi::tbb::is_current_task_group_canceling()) throw Cancelled();  // thousands of samples take long
-        batch_.blocked.resize(batch_.rays.size());
-        if (coherent)
-            intersector_.occluded_coherent(batch_.rays, batch_.blocked);
-        else
-            intersector_.occluded_incoherent(batch_.rays, batch_.blocked);
-        for (std::size_t i = 0; i < batch_.rays.size(); ++i)
+        // Also towards the sun: starts that lie a voxel apart and more make packets no faster.
+        const std::size_t count = std::exchange(batch_.count, 0);
+        intersector_.occluded_incoherent({batch_.rays.data(), count}, {batch_.blocked.data(), count});
+        for (std::size_t i = 0; i < count; ++i)
             if (batch_.blocked[i] == 0) irradiance_[batch_.target[i] & 1U][batch_.target[i] >> 1U] += batch_.irradiance[i];
-        rays_ += batch_.rays.size();
-        batch_.clear();
+        rays_ += count;
     }
 
     void delta(int light) {
-        for (std::size_t k = 0; k < order_.size(); ++k) {
+        const bool parallel = lights_.delta_is_directional(light);
+        LightSampler::Delta d = lights_.delta(light, vec3(0));
+        for (std::size_t k = 0; k < count_; ++k)
             for (unsigned side = 0; side < sides(); ++side) {
-                const auto d = lights_.delta(light, at(k, side).position);
+                if (!parallel) d = lights_.delta(light, at(k, side).position);
                 queue(k, side, d.direction, d.distance, d.irradiance);
             }
-        }
-        trace(true);
+        trace();
     }
     VoxelSamples samples_of(std::size_t k, std::uint32_t purpose) const {
-        return {grid_.domain.coordinates(grid_.cell[order_[k]]), seed_, purpose};
+        return {grid_.domain.coordinates(grid_.cell[first_ + k]), shifts_[purpose]};
     }
     void emitters(int s) {
         const float share = 1.0f / static_cast<float>(technique_.samples);
         EmitterBatch batch;
         for (unsigned side = 0; side < sides(); ++side)
-            for (std::size_t begin = 0; begin < order_.size(); begin += EmitterBatch::width) {
-                const std::size_t end = std::min(begin + EmitterBatch::width, order_.size());
+            for (std::size_t begin = 0; begin < count_; begin += EmitterBatch::width) {
+                const std::size_t end = std::min(begin + EmitterBatch::width, count_);
                 batch.count = 0;
                 for (std::size_t k = begin; k < end; ++k) {
                     const vec3 u = samples_of(k, 0).at(s, technique_.samples);
@@ -151,35 +144,43 @@ class Lighting {
                     if (light.pdf > 0.0f) queue(k, side, light.direction, light.distance, light.radiance * (share / light.pdf));
                 }
             }
-        trace(false);
+        trace();
     }
-    /// Constant: directions by cosine. An image: directions by its luminance, over the whole sphere.
     void environment(int s) {
-        const float share = 1.0f / static_cast<float>(technique_.samples);
-        for (std::size_t k = 0; k < order_.size(); ++k) {
+        if (lights_.environment_is_constant())
+            constant_environment(s);
+        else
+            image_environment(s);
+        trace();
+    }
+    /// Directions by cosine.
+    void constant_environment(int s) {
+        const vec3 irradiance = lights_.environment({0, 0, 1}) * (pi / static_cast<float>(technique_.samples));
+        for (std::size_t k = 0; k < count_; ++k) {
             const vec3 u = samples_of(k, 1).at(s, technique_.samples);
-            if (!lights_.environment_is_constant()) {
-                const auto light = lights_.sample_environment({u.x, u.y});
-                for (unsigned side = 0; side < sides() && light.pdf > 0.0f; ++side)
-                    queue(k, side, light.direction, light.distance, light.radiance * (share / light.pdf));
-                continue;
-            }
             const vec3 local = cosine_hemisphere({u.x, u.y});
-            for (unsigned side = 0; side < sides() && local.z > 0.0f; ++side) {
-                const vec3 away = Frame(at(k, side).normal).to_world(local);
-                queue(k, side, away, std::numeric_limits<float>::infinity(), lights_.environment(away) * (pi * share / local.z));
-            }
+            for (unsigned side = 0; side < sides() && local.z > 0.0f; ++side)
+                queue(k, side, Frame(at(k, side).normal).to_world(local), infinity, irradiance / local.z);
         }
-        trace(false);
+    }
+    /// Directions by luminance, over the whole sphere.
+    void image_environment(int s) {
+        const float share = 1.0f / static_cast<float>(technique_.samples);
+        for (std::size_t k = 0; k < count_; ++k) {
+            const vec3 u = samples_of(k, 1).at(s, technique_.samples);
+            const auto light = lights_.sample_environment({u.x, u.y});
+            for (unsigned side = 0; side < sides() && light.pdf > 0.0f; ++side)
+                queue(k, side, light.direction, light.distance, light.radiance * (share / light.pdf));
+        }
     }
 
     const TracedLighting& technique_;
     const LightSampler& lights_;
     const Intersector& intersector_;
     const VoxelGrid& grid_;
-    std::uint32_t seed_;
-    std::span<const std::uint32_t> order_;
-    std::vector<vec3> irradiance_[2];
+    CubePoint shifts_[2];  // of the samples of emitters, and of the environment
+    std::size_t first_ = 0, count_ = 0;
+    std::array<vec3, voxels_of_block> irradiance_[2];  // of the fronts, and of the backs
     Batch batch_;
     std::uint64_t rays_ = 0;
 };
@@ -191,11 +192,10 @@ LitVoxels light_voxels(const TracedLighting& technique, const LightSampler& ligh
     LitVoxels lit;
     lit.radiance = Buffer<vec3>(voxels->size());
     if (technique.both_sides) lit.back = Buffer<vec3>(voxels->size());
-    const auto order = brick_order(*voxels);
     std::atomic<std::uint64_t> rays{0};
-    parallel_blocks(order.size(), voxels_of_block, [&](std::size_t begin, std::size_t end) {
+    parallel_blocks(voxels->size(), voxels_of_block, [&](std::size_t begin, std::size_t end) {
         Lighting lighting(technique, lights, intersector, *voxels, seed);
-        lighting.block(std::span(order).subspan(begin, end - begin), lit);
+        lighting.block(begin, end, lit);
         rays += lighting.rays();
     });
     lit.counts.shadow_rays = rays;
