@@ -19,7 +19,7 @@ from interreflect.scenes.digest import digest
 from interreflect.scenes.files import Folder
 from interreflect.scenes.scene import Scene
 from interreflect.scenes.stored import array_bytes, read_stored, write_scene
-from interreflect.study.files import DamagedFile, canonical, checksum, read_checked, set_aside
+from interreflect.study.files import DamagedFile, checked, read_checked, set_aside
 
 KIND = "scenes"
 FORMAT = 1
@@ -55,7 +55,7 @@ def keep(path: str, scene: Scene, folder: Folder) -> None:
         key = _content_key(path, names)
     except (OSError, SceneError):  # a file went away while it was read
         return
-    envelope = canonical({"format": FORMAT, "checksum": checksum(names), "content": names}).encode()
+    envelope = checked(names, FORMAT)
     if cache.write(cache.folder(KIND) / f"{key}.scene", lambda file: write_scene(scene, file)):
         cache.write(_list_path(path), lambda file: file.write(envelope))
 

@@ -6,15 +6,19 @@ import errno
 import hashlib
 import json
 import os
+import re
 import socket
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import IO, Any
 
+import orjson
+
 PART = ".part"  # suffix of files being written: <name>.<host>.<process>.part
 DAMAGED = ".damaged"
 HOST = socket.gethostname().replace(".", "-")  # folders may be shared between machines
+HEAD = re.compile(rb'\{\s*"format":\s*(\d+),\s*"checksum":\s*"([0-9a-f]{64})",\s*"content":\s*')
 NO_ROOM = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
 
 
@@ -70,26 +74,39 @@ def canonical(content: Any) -> str:
     return json.dumps(content, sort_keys=True, separators=(",", ":"), ensure_ascii=False, allow_nan=False)
 
 
-def checksum(content: Any) -> str:
-    return hashlib.sha256(canonical(content).encode()).hexdigest()
+def checked(content: Any, version: int) -> bytes:
+    """A JSON text that holds content, its format version and its checksum."""
+    text = canonical(content).encode()
+    return b'{"format":%d,"checksum":"%s","content":%s}' % (version, hashlib.sha256(text).hexdigest().encode(), text)
 
 
 def write_checked(path: Path, content: Any, version: int) -> None:
     """Write JSON content with its format version and checksum."""
     with replacing(path) as file:
-        file.write(canonical({"format": version, "checksum": checksum(content), "content": content}).encode())
+        file.write(checked(content, version))
 
 
-def read_checked(path: Path, version: int) -> Any:
+def read_checked(path: str | Path, version: int) -> Any:
     """The content of a file of `write_checked`. DamagedFile where torn or altered, ValueError for another format version."""
-    try:
-        envelope = json.loads(path.read_bytes())
-        found, content = envelope["format"], envelope["content"]
-        whole = envelope["checksum"] == checksum(content)
-    except (ValueError, KeyError, TypeError, RecursionError) as error:
-        raise DamagedFile(f"{path}: not a whole record ({error})") from error
-    if not whole:
+    with open(path, "rb", buffering=0) as file:
+        data = file.read()
+    head = HEAD.match(data)
+    if head is None:
+        raise _other_format(path, data, version)
+    if int(head[1]) != version:
+        raise ValueError(f"{path}: format version must be {version}, got {int(head[1])}")
+    text = memoryview(data)[head.end() : -1]
+    if hashlib.sha256(text).hexdigest().encode() != head[2]:
         raise DamagedFile(f"{path}: content and checksum differ")
-    if found != version:
-        raise ValueError(f"{path}: format version must be {version}, got {found}")
-    return content
+    return orjson.loads(text)
+
+
+def _other_format(path: str | Path, data: bytes, version: int) -> ValueError:
+    """What to say of a file that does not begin as ours do: the first format named its version at the end."""
+    try:
+        found = json.loads(data)["format"]
+    except (ValueError, KeyError, TypeError, RecursionError) as error:
+        return DamagedFile(f"{path}: not a whole record ({error})")
+    if found == version:
+        return DamagedFile(f"{path}: not as it was written")
+    return ValueError(f"{path}: format version must be {version}, got {found}")

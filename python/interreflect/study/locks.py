@@ -72,8 +72,8 @@ def _wait(file: int, kind: int, waiting: Callable[[], None]) -> None:
 
 
 def _open(name: str) -> int:
-    """A file of the machine's temporary folder, which every user may lock, whoever made it."""
-    path = Path(tempfile.gettempdir()) / f"interreflect-{name}.lock"
+    """A file that every user may lock, whoever made it: in INTERREFLECT_LOCKS, else the machine's temporary folder."""
+    path = Path(os.environ.get("INTERREFLECT_LOCKS") or tempfile.gettempdir()) / f"interreflect-{name}.lock"
     flags = os.O_RDONLY | os.O_CLOEXEC | os.O_NOFOLLOW
     try:
         return os.open(path, flags)

@@ -7,7 +7,8 @@ import gc
 import math
 import os
 import re
-from contextlib import suppress
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 PAGE = os.sysconf("SC_PAGE_SIZE")
@@ -38,6 +39,18 @@ def peak_bytes() -> float:
     except OSError:
         return math.nan
     return int(found.group(1)) * 1024.0 if found else math.nan
+
+
+@contextmanager
+def without_collection() -> Iterator[None]:
+    """Let the collection of cyclic garbage wait."""
+    collecting = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if collecting:
+            gc.enable()
 
 
 def give_back() -> None:

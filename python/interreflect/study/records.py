@@ -29,6 +29,7 @@ FIXED = (
     "precompute_milliseconds", "peak_memory_bytes", "calibration", "limit_milliseconds", "limit_ratio", *METRICS, "noise", "indirect_noise",
     "width", "height", "threads", "repeats", "truth_spp", "scene_hash", "processor", "compiler", "commit", "warnings", "key",
 )  # fmt: skip
+MAY_BE_NAN = ("metrics", "knobs", "limits")  # and every number of a record itself; stages only where nothing was timed
 # Columns (beside `stage.<name>.milliseconds`) that differ when the same cell is measured again.
 OF_THE_MOMENT = (
     "milliseconds", "milliseconds_low", "milliseconds_high", "milliseconds_p95", "contended", "others_share", "precompute_milliseconds",
@@ -82,8 +83,10 @@ class Record:
     @staticmethod
     def from_content(content: Mapping[str, Any]) -> Record:
         """The inverse of `as_content`."""
-        values = {name: _restored(value) for name, value in content.items()}
+        values: dict[str, Any] = {name: _restored_here(value) if name in MAY_BE_NAN else _number(value) for name, value in content.items()}
         values |= {name: tuple(values[name]) for name in ("size", "warnings", "times")}
+        if values["repeats"] == 0:
+            values["stages"] = {name: _restored_here(stage) for name, stage in values["stages"].items()}
         return Record(**values)
 
     @property
@@ -192,11 +195,10 @@ def _portable(value: Any) -> Any:
     return value if value is None or isinstance(value, bool | int | float | str) else str(value)
 
 
-def _restored(value: Any) -> Any:
-    if isinstance(value, dict):
-        if value.keys() == {"number"}:
-            return float(value["number"])
-        return {key: _restored(item) for key, item in value.items()}
-    if isinstance(value, list):
-        return [_restored(item) for item in value]
-    return value
+def _restored_here(values: Mapping[str, Any]) -> dict[str, Any]:
+    return {name: _number(value) for name, value in values.items()}
+
+
+def _number(value: Any) -> Any:
+    """The inverse of `_portable` for a number that JSON lacks; anything else as it is."""
+    return float(value["number"]) if type(value) is dict and value.keys() == {"number"} else value

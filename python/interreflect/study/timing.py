@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import gc
 import math
 from collections.abc import Callable, Sequence
 from typing import Any
@@ -12,6 +11,7 @@ import numpy as np
 
 from interreflect.study.contention import Watch
 from interreflect.study.interface import Frame, Profile
+from interreflect.study.memory import without_collection
 
 WITHIN = 0.02  # of the median: how near both ends of its interval must be
 OUTSIDE = 0.05  # chance that the interval misses the median of all times
@@ -67,16 +67,11 @@ def measure(
     if repeats == 0:
         return frame, untimed(frame.profile)
     before_clock()
-    collecting = gc.isenabled()
-    gc.disable()
-    try:
+    with without_collection():
         frame, timing = _repeat(render, repeats, max_repeats)
         if timing.contended:
             frame, again = _repeat(render, repeats, max_repeats)
             timing = min(timing, again, key=lambda timing: timing.others_share)
-    finally:
-        if collecting:
-            gc.enable()
     return frame, timing
 
 
