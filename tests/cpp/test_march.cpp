@@ -87,7 +87,7 @@ TEST(Cones, SeeAUniformWorldAsItIs) {
     for (const int faces : {1, 6}) {
         const Pyramid pyramid = uniform_pyramid(6, {0.25f, 1.5f, 40.0f, 1.0f}, faces);
         ConeBatch batch = random_cones(pyramid, 100);
-        march_cones(pyramid, make_schedule({0.5f, 0.75f, 0.5f, 0.0f, 1.0f}, pyramid), 0.02f, batch);
+        march_cones(pyramid, AirMap(pyramid), make_schedule({0.5f, 0.75f, 0.5f, 0.0f, 1.0f}, pyramid), 0.02f, batch);
         for (int i = 0; i < batch.count; ++i) {
             EXPECT_NEAR(batch.r[i], 0.25f, 1e-3f);  // half floats: 5e-4 relative
             EXPECT_NEAR(batch.g[i], 1.5f, 2e-3f);
@@ -100,7 +100,7 @@ TEST(Cones, SeeAUniformWorldAsItIs) {
 TEST(Cones, SeeNothingInAnEmptyWorld) {
     const Pyramid pyramid = uniform_pyramid(6, vec4(0));
     ConeBatch batch = random_cones(pyramid, 37);
-    march_cones(pyramid, make_schedule({0.3f, 0.75f, 0.5f, -1.0f, 1.0f}, pyramid), 0.02f, batch);
+    march_cones(pyramid, AirMap(pyramid), make_schedule({0.3f, 0.75f, 0.5f, -1.0f, 1.0f}, pyramid), 0.02f, batch);
     for (int i = 0; i < batch.count; ++i) {
         EXPECT_EQ(batch.r[i], 0.0f);
         EXPECT_EQ(batch.open[i], 1.0f);
@@ -117,7 +117,7 @@ TEST(Cones, FogBlocksByItsDepthWhateverTheStep) {
         batch.count = 1;
         set_start(batch, 0, pyramid.domain, {32, 32, 32}, {0, 0, 1}, 0.0f, true);
         set_direction(batch, 0, {0, 0, 1}, {1, 0, 0});
-        march_cones(pyramid, make_schedule({0.0f, 1.0f, step, 0.0f, 1.0f}, pyramid), 0.0f, batch);
+        march_cones(pyramid, AirMap(pyramid), make_schedule({0.0f, 1.0f, step, 0.0f, 1.0f}, pyramid), 0.0f, batch);
         EXPECT_NEAR(std::log(batch.open[0]) / std::log(1.0f - a), 33.0f, 1.0f) << step;
     }
 }

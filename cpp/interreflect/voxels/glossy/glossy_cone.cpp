@@ -27,6 +27,7 @@ struct Work {
     const Pyramid& pyramid;
     const GBuffer& gbuffer;
     const Scene& scene;
+    AirMap air;
     const LobeTable* tables[3];  // by lobe; null where no material has it
     std::vector<ConeSchedule> schedules;
     std::vector<ConeEnvironment> environments;  // of cones 0, 15, 30, 45, 60 degrees wide (half angle)
@@ -65,7 +66,7 @@ Counts march_width(const Work& work, std::span<const Reflection> cones, ConeBatc
         set_start(batch, i, work.pyramid.domain, cones[i].surface, normal, work.normal_offset, work.own_surface);
         set_direction(batch, i, normal, cones[i].direction);
     }
-    const ConeCounts done = march_cones(work.pyramid, work.schedules[cones.front().width], work.cut_off, batch);
+    const ConeCounts done = march_cones(work.pyramid, work.air, work.schedules[cones.front().width], work.cut_off, batch);
     for (int i = 0; i < batch.count; ++i) {
         voxels[cones[i].pixel] = vec4(vec3(batch.r[i], batch.g[i], batch.b[i]) * cones[i].albedo, 0);
         sky[cones[i].pixel] = vec4(work.sky(cones[i], cones[i].direction) * cones[i].albedo * batch.open[i], 0);
@@ -99,6 +100,7 @@ Work prepare(const GlossyCone& technique, const Pyramid& pyramid, const GBuffer&
     Work work{pyramid,
               gbuffer,
               scene,
+              AirMap(pyramid),
               {},
               {},
               {},

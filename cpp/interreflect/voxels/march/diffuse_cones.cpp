@@ -30,6 +30,7 @@ struct Work {
     const GBuffer& gbuffer;
     ConeSet set;
     ConeSchedule schedule;
+    AirMap air;
     ConeEnvironment environment;
     Block block;
     float normal_offset, cut_off;
@@ -99,7 +100,7 @@ Counts march_phase(const Work& work, int phase, Receivers& receivers, ConeBatch&
     Counts counts;
     for (std::size_t c = phase; c < work.set.cones.size(); c += work.block.phases()) {
         turn_cones(receivers, work.set.cones[c].direction, batch);
-        const ConeCounts done = march_cones(work.pyramid, work.schedule, work.cut_off, batch);
+        const ConeCounts done = march_cones(work.pyramid, work.air, work.schedule, work.cut_off, batch);
         counts.cones += batch.count, counts.cone_steps += done.steps, counts.voxel_fetches += done.fetches;
         add_results(work, batch, work.set.cones[c].weight, receivers);
     }
@@ -122,6 +123,7 @@ GatheredLight march(const DiffuseCones& technique, const Pyramid& pyramid, const
                     gbuffer,
                     set,
                     make_schedule(shape, pyramid),
+                    AirMap(pyramid),
                     ConeEnvironment(scene, set.half_angle),
                     block_of(share),
                     static_cast<float>(technique.normal_offset),

@@ -3,10 +3,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "voxels/march/march_cones.cpp"
 #include <hwy/foreach_target.h>
-// clang-format off
 #include <hwy/highway.h>
-#include <hwy/contrib/math/math-inl.h>
-// clang-format on
 
 // Roofline. A step of one cone reads two levels: 8 loads of 16 bytes, all but the first two or three steps from cache; the
 // arithmetic is 14 fused multiply-adds of 8 lanes. The loads bound it: 8 loads at 2 a cycle are 4 cycles; addresses, weights and
@@ -52,12 +49,14 @@ struct LevelView {
     std::size_t row, slice, volume;
     int faces;
     float inverse_size;  // texels a voxel
+    const AirMap::Level* air;
 };
 
-LevelView view_of(const Pyramid::Level& level, int number) {
+LevelView view_of(const Pyramid& pyramid, const AirMap& air, int number) {
+    const Pyramid::Level& level = pyramid.levels[static_cast<std::size_t>(number)];
     const auto* texels = reinterpret_cast<const Half*>(level.texels.data());
-    return {texels + 4 * level.index(0, 0, 0),     4 * level.row(), 4 * level.slice(), 4 * level.volume(), level.faces,
-            1.0f / static_cast<float>(1 << number)};
+    return {texels + 4 * level.index(0, 0, 0),      4 * level.row(), 4 * level.slice(), 4 * level.volume(), level.faces,
+            1.0f / static_cast<float>(1 << number), air.of(number)};
 }
 
 constexpr int max_lanes = HWY_MAX_BYTES / sizeof(float);
@@ -68,31 +67,44 @@ struct Taps {
     alignas(64) float fx[max_lanes], fy[max_lanes], fz[max_lanes];
 };
 
+/// Returns which of the taps may read something else than air.
 template <class D, class V = hn::Vec<D>>
-HWY_INLINE void place_taps(D d, const LevelView& level, V x, V y, V z, Taps& taps) {
+HWY_INLINE hn::Mask<D> place_taps(D d, const LevelView& level, V x, V y, V z, Taps& taps) {
     const hn::RebindToSigned<D> di;
     const V half = hn::Set(d, -0.5f), scale = hn::Set(d, level.inverse_size);
     const V qx = hn::MulAdd(x, scale, half), qy = hn::MulAdd(y, scale, half), qz = hn::MulAdd(z, scale, half);
     const V bx = hn::Floor(qx), by = hn::Floor(qy), bz = hn::Floor(qz);
     const auto row = hn::Set(di, static_cast<int>(level.row)), slice = hn::Set(di, static_cast<int>(level.slice));
-    const auto offset = hn::Add(hn::Add(hn::ShiftLeft<2>(hn::ConvertTo(di, bx)), hn::Mul(hn::ConvertTo(di, by), row)),
-                                hn::Mul(hn::ConvertTo(di, bz), slice));
+    const auto ix = hn::ConvertTo(di, bx), iy = hn::ConvertTo(di, by), iz = hn::ConvertTo(di, bz);
+    const auto offset = hn::Add(hn::Add(hn::ShiftLeft<2>(ix), hn::Mul(iy, row)), hn::Mul(iz, slice));
     hn::Store(offset, di, taps.offset);
     hn::Store(hn::Sub(qx, bx), d, taps.fx);
     hn::Store(hn::Sub(qy, by), d, taps.fy);
     hn::Store(hn::Sub(qz, bz), d, taps.fz);
+    if (level.air == nullptr) return hn::FirstN(d, hn::Lanes(d));
+    const auto one = hn::Set(di, 1), tx = hn::Add(ix, one);
+    const auto words = [&](std::uint32_t count) HWY_ATTR { return hn::Set(di, static_cast<int>(count)); };
+    const auto word = hn::Add(hn::Add(hn::ShiftRight<5>(tx), hn::Mul(hn::Add(iy, one), words(level.air->row_words))),
+                              hn::Mul(hn::Add(iz, one), words(level.air->slice_words)));
+    const auto bits = hn::GatherIndex(di, reinterpret_cast<const int32_t*>(level.air->words.data()), word);
+    const auto bit = hn::Shl(one, hn::And(tx, hn::Set(di, 31)));
+    return hn::RebindMask(d, hn::Ne(hn::And(bits, bit), hn::Zero(di)));
 }
 
-/// The octant of a direction, whose coordinates lie `capacity` apart.
-HWY_INLINE std::size_t octant_of(const float* direction) {
-    const auto positive = [direction](int axis) { return direction[axis * ConeBatch::capacity] > 0.0f ? 1U : 0U; };
-    return positive(0) + 2 * positive(1) + 4 * positive(2);
+/// The octant of each direction of a vector.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE void store_octants(D d, V dx, V dy, V dz, int* octants) {
+    const hn::RebindToSigned<D> di;
+    const auto bit = [&](V along, int value) HWY_ATTR {
+        return hn::IfThenElseZero(hn::RebindMask(di, hn::Gt(along, hn::Zero(d))), hn::Set(di, value));
+    };
+    hn::Store(hn::Or(hn::Or(bit(dx, 1), bit(dy, 2)), bit(dz, 4)), di, octants);
 }
 
 /// What a cone sees of a level: its one volume, the one of its octant, or three of its six blended by the squared direction.
-HWY_INLINE hn::Vec<decltype(d4)> sample(const LevelView& level, const Taps& taps, int lane, const float* direction) {
+HWY_INLINE hn::Vec<decltype(d4)> sample(const LevelView& level, const Taps& taps, int lane, const float* direction, int octant) {
     const Half* at = level.texels + taps.offset[lane];
-    if (level.faces == 8) at += level.volume * octant_of(direction);
+    if (level.faces == 8) at += level.volume * static_cast<std::size_t>(octant);
     const float fx = taps.fx[lane], fy = taps.fy[lane], fz = taps.fz[lane];
     if (level.faces != 6) return tap(at, level.row, level.slice, fx, fy, fz);
     auto sum = hn::Zero(d4);
@@ -171,6 +183,32 @@ HWY_INLINE V own_opacity(D d, float inverse_size, V height, V width, V axis_plan
     return hn::IfThenElse(hn::Gt(aligned, zero), known, mean);
 }
 
+/// Horner's rule, highest power first.
+template <class D, class V = hn::Vec<D>, std::size_t n>
+HWY_INLINE V polynomial(D d, V x, const float (&coefficients)[n]) {
+    V sum = hn::Set(d, coefficients[0]);
+    for (std::size_t i = 1; i < n; ++i) sum = hn::MulAdd(sum, x, hn::Set(d, coefficients[i]));
+    return sum;
+}
+
+/// x^exponent, x in [0, 1], within 1e-6 times the exponent: opacities are half floats. Exactly 1 at 1, and 0 from 1e-12 down.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V power(D d, V x, float exponent) {
+    const hn::RebindToSigned<D> di;
+    // Chebyshev fits: log2(1 + t) / t for 1 + t in [sqrt(1/2), sqrt(2)], and 2^t for t in [-1/2, 1/2].
+    static constexpr float log2_over_t[] = {0.172128703f, -0.269506265f, 0.295633603f, -0.359350654f,
+                                            0.480629147f, -0.72136404f,  1.44269643f};
+    static constexpr float exp2_of_t[] = {0.00134004322f, 0.0096760371f, 0.0555032721f, 0.240221074f, 0.693147207f, 1.0f};
+    const auto bits = hn::BitCast(di, x);
+    const auto whole = hn::ShiftRight<23>(hn::Sub(bits, hn::Set(di, 0x3f3504f3)));  // sqrt(1/2)
+    const V t = hn::Sub(hn::BitCast(d, hn::Sub(bits, hn::ShiftLeft<23>(whole))), hn::Set(d, 1.0f));
+    const V log2 = hn::MulAdd(t, polynomial(d, t, log2_over_t), hn::ConvertTo(d, whole));
+    const V y = hn::Max(hn::Mul(log2, hn::Set(d, exponent)), hn::Set(d, -126.0f)), nearest = hn::Round(y);
+    const V mantissa = polynomial(d, hn::Sub(y, nearest), exp2_of_t);
+    const V result = hn::BitCast(d, hn::Add(hn::BitCast(di, mantissa), hn::ShiftLeft<23>(hn::ConvertTo(di, nearest))));
+    return hn::IfThenElseZero(hn::Gt(x, hn::Set(d, 1e-12f)), result);
+}
+
 /// 1 - (1 - a)^exponent.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V stretched_opacity(D d, V a, float exponent) {
@@ -179,22 +217,20 @@ HWY_INLINE V stretched_opacity(D d, V a, float exponent) {
     const V clear = hn::Sub(one, a);
     if (exponent == 0.5f) return hn::Sub(one, hn::Sqrt(clear));
     if (exponent == 2.0f) return hn::Sub(one, hn::Mul(clear, clear));
-    const V floor = hn::Set(d, 1e-12f);
-    const V power = hn::Exp(d, hn::Mul(hn::Set(d, exponent), hn::Log(d, hn::Max(clear, floor))));
-    return hn::Sub(one, hn::IfThenElseZero(hn::Gt(clear, floor), power));
+    return hn::Sub(one, power(d, clear, exponent));
 }
 
 /// What each marching cone of a vector sees at its sample: four floats a lane in `colour`. `l1`: the coarser level, or null.
 template <class D>
 HWY_INLINE void sample_lanes(D d, unsigned bits, const LevelView& l0, const Taps& fine, const LevelView* l1, const Taps& coarse,
-                             float blend, const float* directions, float* colour) {
+                             float blend, const float* directions, const int* octants, float* colour) {
 #if HWY_MAX_BYTES >= 64
     if (l1 != nullptr && l1->faces != 6) {
         alignas(64) float weights[4 * max_lanes];
         column_weights(d, fine, coarse, blend, weights);
         for (unsigned left = bits; left != 0; left &= left - 1) {
             const int lane = static_cast<int>(hwy::Num0BitsBelowLS1Bit_Nonzero32(left));
-            const std::size_t octant = l0.faces == 8 ? octant_of(directions + lane) : 0;
+            const auto octant = static_cast<std::size_t>(l0.faces == 8 ? octants[lane] : 0);
             hn::Store(sample_both(l0, fine, *l1, coarse, lane, octant, weights + 4 * lane), d4, colour + 4 * lane);
         }
         return;
@@ -204,19 +240,20 @@ HWY_INLINE void sample_lanes(D d, unsigned bits, const LevelView& l0, const Taps
     const auto share = hn::Set(d4, blend);
     for (unsigned left = bits; left != 0; left &= left - 1) {
         const int lane = static_cast<int>(hwy::Num0BitsBelowLS1Bit_Nonzero32(left));
-        auto seen = sample(l0, fine, lane, directions + lane);
-        if (l1 != nullptr) seen = hn::MulAdd(hn::Sub(sample(*l1, coarse, lane, directions + lane), seen), share, seen);
+        auto seen = sample(l0, fine, lane, directions + lane, octants[lane]);
+        if (l1 != nullptr)
+            seen = hn::MulAdd(hn::Sub(sample(*l1, coarse, lane, directions + lane, octants[lane]), seen), share, seen);
         hn::Store(seen, d4, colour + 4 * lane);
     }
 }
 
-ConeCounts march_batch(const Pyramid& pyramid, const ConeSchedule& schedule, float cut_off, ConeBatch& batch) {
+ConeCounts march_batch(const Pyramid& pyramid, const AirMap& air, const ConeSchedule& schedule, float cut_off, ConeBatch& batch) {
     const hn::ScalableTag<float> d;
     using V = hn::Vec<decltype(d)>;
     const int lanes = static_cast<int>(hn::Lanes(d));
     LevelView levels[32];
     const int level_count = static_cast<int>(pyramid.levels.size());
-    for (int i = 0; i < level_count; ++i) levels[i] = view_of(pyramid.levels[i], i);
+    for (int i = 0; i < level_count; ++i) levels[i] = view_of(pyramid, air, i);
     const V zero = hn::Zero(d), one = hn::Set(d, 1.0f);
     const float sx = static_cast<float>(pyramid.domain.cells.x), sy = static_cast<float>(pyramid.domain.cells.y),
                 sz = static_cast<float>(pyramid.domain.cells.z);
@@ -233,16 +270,17 @@ ConeCounts march_batch(const Pyramid& pyramid, const ConeSchedule& schedule, flo
         const auto has_plane = hn::Gt(width, zero);
         V r = zero, g = zero, b = zero, open = one;
         alignas(64) float colour[4 * max_lanes] = {};
+        alignas(64) int octants[max_lanes];
+        store_octants(d, dx, dy, dz, octants);
         Taps fine, coarse;
         for (const auto& step : schedule.steps) {
             // A cone ends when its filter has left the domain; between that and its axis leaving, the border repeats the
             // outermost texels, so an outer wall closes as tightly as an inner one.
             const V distance = hn::Set(d, step.distance);
             active = hn::And(active, hn::Lt(hn::Sub(distance, hn::Set(d, step.reach)), exit));
-            uint8_t bytes[8] = {};
-            hn::StoreMaskBits(d, active, bytes);
-            unsigned bits = static_cast<unsigned>(bytes[0]) | (static_cast<unsigned>(bytes[1]) << 8);
-            if (bits == 0) break;
+            if (hn::AllFalse(d, active)) break;
+            const auto marching = static_cast<std::uint64_t>(hn::CountTrue(d, active));
+            counts.steps += marching;
             const auto inside = [&](V p, V direction, float size) HWY_ATTR {
                 return hn::Min(hn::Max(hn::MulAdd(direction, distance, p), zero), hn::Set(d, size));
             };
@@ -250,15 +288,23 @@ ConeCounts march_batch(const Pyramid& pyramid, const ConeSchedule& schedule, flo
             const LevelView& l0 = levels[step.level];
             const bool two = step.blend > 0.0f;
             const LevelView& l1 = levels[two ? step.level + 1 : step.level];
-            place_taps(d, l0, x, y, z, fine);
-            if (two) place_taps(d, l1, x, y, z, coarse);
-            sample_lanes(d, bits, l0, fine, two ? &l1 : nullptr, coarse, step.blend, batch.dx + first, colour);
-            const auto marching = static_cast<std::uint64_t>(hn::CountTrue(d, active));
-            counts.steps += marching;
-            counts.fetches += marching * static_cast<std::uint64_t>(two ? l0.faces == 6 ? 6 : l1.faces == 6 ? 4 : 2 : 1);
+            // What is air to a coarser tap is air to the finer ones within it.
+            const auto seeing = hn::And(active, place_taps(d, l1, x, y, z, coarse));
+            if (hn::AllFalse(d, seeing)) continue;
+            if (two) place_taps(d, l0, x, y, z, fine);
+            uint8_t bytes[8] = {};
+            hn::StoreMaskBits(d, seeing, bytes);
+            const unsigned bits = static_cast<unsigned>(bytes[0]) | (static_cast<unsigned>(bytes[1]) << 8);
+            sample_lanes(d, bits, l0, two ? fine : coarse, two ? &l1 : nullptr, coarse, step.blend, batch.dx + first, octants,
+                         colour);
+            counts.fetches +=
+                static_cast<std::uint64_t>(hn::CountTrue(d, seeing)) * static_cast<std::uint64_t>(two ? l0.faces == 6   ? 6
+                                                                                                        : l1.faces == 6 ? 4
+                                                                                                                        : 2
+                                                                                                      : 1);
             V tr, tg, tb, ta;
             hn::LoadInterleaved4(d, colour, tr, tg, tb, ta);
-            ta = hn::Min(hn::Max(ta, zero), one);
+            ta = hn::IfThenElseZero(seeing, hn::Min(hn::Max(ta, zero), one));
             const V h = hn::MulAdd(slope, distance, height), along = hn::MulAdd(axis_direction, distance, axis_start);
             V own = own_opacity(d, l0.inverse_size, h, width, axis_plane, along, axis_cells, aligned);
             if (two) {
@@ -267,7 +313,7 @@ ConeCounts march_batch(const Pyramid& pyramid, const ConeSchedule& schedule, flo
             }
             own = hn::IfThenElseZero(has_plane, own);
             const V others = hn::Div(hn::Max(hn::Sub(ta, own), zero), hn::Max(hn::Sub(one, own), hn::Set(d, 1e-3f)));
-            const V opacity = hn::IfThenElseZero(active, stretched_opacity(d, hn::Min(others, one), step.exponent));
+            const V opacity = hn::IfThenElseZero(seeing, stretched_opacity(d, hn::Min(others, one), step.exponent));
             // Radiance is premultiplied by the texel's opacity; the step shows more or less of it.
             const V share = hn::Mul(open, hn::Div(opacity, hn::Max(ta, hn::Set(d, 1e-6f))));
             r = hn::MulAdd(share, tr, r);
@@ -295,8 +341,8 @@ namespace interreflect {
 
 HWY_EXPORT(march_batch);
 
-ConeCounts march_cones(const Pyramid& pyramid, const ConeSchedule& schedule, float cut_off, ConeBatch& batch) {
-    return HWY_DYNAMIC_DISPATCH(march_batch)(pyramid, schedule, cut_off, batch);
+ConeCounts march_cones(const Pyramid& pyramid, const AirMap& air, const ConeSchedule& schedule, float cut_off, ConeBatch& batch) {
+    return HWY_DYNAMIC_DISPATCH(march_batch)(pyramid, air, schedule, cut_off, batch);
 }
 
 }  // namespace interreflect

@@ -1,6 +1,7 @@
 /// The kernel of the march: many cones of one angle through one pyramid.
 #pragma once
 #include "data/voxel_grid.h"
+#include "voxels/march/air_map.h"
 #include "voxels/march/cone_schedule.h"
 
 namespace interreflect {
@@ -56,7 +57,7 @@ struct ConeCounts {
 };
 
 /// Marches every cone front to back until it has left the domain or less than `cut_off` of it is open; what is left is then
-/// counted as if it looked like what came before.
-ConeCounts march_cones(const Pyramid& pyramid, const ConeSchedule& schedule, float cut_off, ConeBatch& batch);
+/// counted as if it looked like what came before. `air` is the pyramid's.
+ConeCounts march_cones(const Pyramid& pyramid, const AirMap& air, const ConeSchedule& schedule, float cut_off, ConeBatch& batch);
 
 }  // namespace interreflect
