@@ -54,6 +54,23 @@ def test_closed_forms_hold_for_path_tracing(row, share):
     assert reading.error < 0.3 * row.tolerance
 
 
+@pytest.mark.long
+@names("share", [0.0, 1.0])
+@names("row", COMPARED, ids=lambda row: row.name)
+def test_references_hold_for_path_tracing_of_another_seed(row, share):
+    """Truth and metric are sound: what has no approximation stays within the tolerance, and about as far off as the truth's own noise."""
+    reading = row.read(ir.methods.PathTracing(spp=2048), row.at(share), seed=9)
+    assert reading.error < 0.9 * row.tolerance
+    assert reading.error < 4 * reading.floor + 0.05 * row.tolerance
+
+
+@pytest.mark.long
+@names("row", [row for row in IN_MOTION if not row.waits], ids=lambda row: row.name)
+def test_motion_in_many_samples_is_steady(row):
+    reading = row.read(ir.methods.PathTracing(spp=1024), row.at(0.4), seed=9)
+    assert reading.error < row.tolerance
+
+
 @names("row", UNCHANGED, ids=lambda row: row.name)
 def test_a_picture_is_the_same_at_the_easy_end(row):
     reading = row.read(ir.methods.PathTracing(spp=4), row.easy)
