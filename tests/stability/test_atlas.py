@@ -85,6 +85,8 @@ def test_the_page_shows_every_cell_and_loads_nothing(atlas, tmp_path):
 def test_leaks_and_occlusion_are_drawn_against_each_other_with_a_mark_per_method(atlas):
     (axes,) = atlas.leak_against_occlusion().axes
     assert len(axes.collections) == 3
+    swept = np.mean([0.01 / 16 / value for value in THIN.values(6)])  # the coarse grid's law, in both rows
+    assert axes.collections[0].get_offsets().data[0] == pytest.approx((swept, swept))
     few = dataclasses.replace(atlas, cells=tuple(cell for cell in atlas.cells if cell.failure is THIN))
     with pytest.raises(ValueError, match="both a leak and an occlusion"):
         few.leak_against_occlusion()

@@ -38,7 +38,7 @@ def break_points(atlas: Atlas, dark: bool = False) -> Figure:
     axes.set_xticks([-0.08, 0, 0.5, 1, 1.08], ["always\nabove", "easy", "", "hard", "never"])
     axes.set_xlabel("break point along the sweep of the knob")
     dress(axes, dark)
-    add_legend(figure, [axes], dark)
+    add_legend(figure, [axes], dark, columns=3)
     return figure
 
 
@@ -71,9 +71,10 @@ def leak_against_occlusion(atlas: Atlas, dark: bool = False) -> Figure:
         raise ValueError("the atlas has no method with both a leak and an occlusion")
     axes.axhline(0, color=theme_of(dark)["faint"], linewidth=0.8)
     axes.set_xscale("symlog", linthresh=1e-3)
+    axes.set_xlim(-2e-4, 2 * axes.get_xlim()[1])
     axes.set(xlabel="light leaked through walls, mean over the sweeps", ylabel="sky hidden too much (+) or too little (-), mean")
     dress(axes, dark)
-    add_legend(figure, [axes], dark)
+    add_legend(figure, [axes], dark, columns=2)
     return figure
 
 
@@ -81,7 +82,5 @@ def _means(atlas: Atlas, method: str, prefix: str) -> list[float]:
     means = []
     for cell in atlas.cells:
         if cell.method == method and cell.failure.name.startswith(prefix) and cell.crossing is not None:
-            first_pass = cell.failure.values(6)
-            points = [p for p in cell.crossing.points if any(np.isclose(p.value, value) for value in first_pass)]
-            means.append(float(np.mean([p.error if np.isnan(p.signed) else p.signed for p in points])))
+            means.append(float(np.mean([p.error if np.isnan(p.signed) else p.signed for p in cell.crossing.swept])))
     return means

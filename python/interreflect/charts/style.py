@@ -39,10 +39,10 @@ def dress(ax: Axes, dark: bool) -> Axes:
     return ax
 
 
-def add_legend(figure: Figure, axes: Iterable[Axes], dark: bool) -> None:
+def add_legend(figure: Figure, axes: Iterable[Axes], dark: bool, columns: int = 5) -> None:
     entries = {label: handle for ax in axes for handle, label in zip(*ax.get_legend_handles_labels(), strict=True)}
     legend = figure.legend(
-        entries.values(), entries.keys(), loc="outside lower center", ncols=min(len(entries), 5), frameon=False, fontsize=8
+        entries.values(), entries.keys(), loc="outside lower center", ncols=min(len(entries), columns), frameon=False, fontsize=8
     )
     for text in legend.get_texts():
         text.set_color(theme_of(dark)["ink"])

@@ -37,7 +37,8 @@ class Crossing:
     outcome: "breaks" (below at the easy end, above later), "never", "always" above, "reversed" (above at the easy end, below later).
     value: where the mean error first crosses the tolerance, NaN without. low, high: the nearest values on either side of it at which the
     error is surely below, or above, the tolerance. points: all that was measured, from easy to hard.
-    before, after: the measured neighbours of the break point, easy side first; None where it does not cross.
+    before, after: the measured neighbours of the break point, easy side first; None where it does not cross. swept: the points of the
+    first pass, at values that every method shares.
     """
 
     outcome: str
@@ -45,6 +46,7 @@ class Crossing:
     low: float
     high: float
     points: Sequence[Point]
+    swept: Sequence[Point]
     before: Point | None
     after: Point | None
     words: str
@@ -64,7 +66,8 @@ def point_of(value: float, readings: Sequence[Reading]) -> Point:
 
 def find(row: Failure, measure: Callable[[float], Point], sweep: int = 6, bisections: int = 4) -> Crossing:
     """Sweeps the knob at `sweep` values, then halves the first bracket `bisections` times."""
-    points = [measure(value) for value in row.values(sweep)]
+    swept = [measure(value) for value in row.values(sweep)]
+    points = list(swept)
     above = [point.error > row.tolerance for point in points]
     index = next((k for k in range(len(above) - 1) if above[k] != above[k + 1]), None)
     if index is None:
@@ -84,7 +87,7 @@ def find(row: Failure, measure: Callable[[float], Point], sweep: int = 6, bisect
     if times > 1:
         words = f"{words}; crosses {times} times".removeprefix("; ")
     outcome = REVERSED if above[0] else BREAKS
-    return Crossing(outcome, _estimate(row, before, after), low, high, tuple(points), before, after, words)
+    return Crossing(outcome, _estimate(row, before, after), low, high, tuple(points), tuple(swept), before, after, words)
 
 
 def _without(row: Failure, points: Sequence[Point], above: bool) -> Crossing:
@@ -98,7 +101,7 @@ def _without(row: Failure, points: Sequence[Point], above: bool) -> Crossing:
         if any(point.high > tolerance for point in points):
             words += ", though noise reaches the tolerance"
     nan = math.nan
-    return Crossing(ALWAYS if above else NEVER, nan, nan, nan, tuple(points), None, None, words)
+    return Crossing(ALWAYS if above else NEVER, nan, nan, nan, tuple(points), tuple(points), None, None, words)
 
 
 def _estimate(row: Failure, before: Point, after: Point) -> float:
