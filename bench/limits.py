@@ -54,7 +54,12 @@ def cone_march(c: Calibration, steps: float) -> float:
     return compute(c, 2 * (64 + 4) * steps)
 
 
-def voxel_frame(c: Calibration, pixels: int, steps: float, samples: float, voxels: float) -> float:
-    """G-buffer, sun shadows, cones; each surface sample and voxel is written and read once (48 bytes), each voxel asks the sun once."""
+def around_cones(c: Calibration, pixels: int, samples: float, voxels: float) -> float:
+    """G-buffer and sun shadows; each surface sample and voxel is written and read once (48 bytes), each voxel asks the sun once."""
     voxel_light = trace(c, "occlusion", voxels) + move(c, 2 * 48 * (samples + voxels))
-    return gbuffer(c, pixels) + sun_shadows(c, pixels) + cone_march(c, steps) + voxel_light
+    return gbuffer(c, pixels) + sun_shadows(c, pixels) + voxel_light
+
+
+def voxel_frame(c: Calibration, pixels: int, steps: float, samples: float, voxels: float) -> float:
+    """Cones, and all that is around them."""
+    return around_cones(c, pixels, samples, voxels) + cone_march(c, steps)

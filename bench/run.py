@@ -26,7 +26,7 @@ def main(suite: str) -> None:
     (results / f"{suite}_calibration.json").write_text(json.dumps(calibration.asdict(), indent=1) + "\n")
     print(
         f"read {calibration.read:.1f} GB/s, triad {calibration.triad:.1f} GB/s, multiply-add {calibration.multiply_add:.0f} GFLOP/s "
-        f"({8 * calibration.vector_bytes} bits, {calibration.threads} threads)"
+        f"({8 * calibration.vector_bytes} bits, {calibration.threads} threads), cone steps {calibration.cone_steps:.0f} million a second"
     )
     for kind, rates in calibration.rays.items():
         print(f"{kind} rays, million a second: " + ", ".join(f"{call} {rate:.1f}" for call, rate in rates.items()))

@@ -20,6 +20,9 @@ void bind_calibration(py::module_& m) {
     m.def(
         "multiply_add_rate", [](int repeats) { return run([&] { return multiply_add_rate(repeats); }); }, py::arg("repeats"),
         "Single-precision GFLOP/s of fused multiply-adds, best of `repeats`.");
+    m.def(
+        "cone_step_rate", [](int repeats) { return run([&] { return cone_step_rate(repeats); }); }, py::arg("repeats"),
+        "Million steps of cones a second, each two trilinear look-ups in a pyramid of half floats; best of `repeats`.");
     m.def("vector_bytes", &vector_bytes, "Bytes of the widest vectors of this machine.");
     m.def(
         "ray_rates",

@@ -1006,6 +1006,10 @@ def cone_sky(gbuffer: GBuffer, gathered: typing.Any, glossy: typing.Any | None=N
     """
     What the march's cones left open: albedo / pi * gathered.sky + glossy.sky.
     """
+def cone_step_rate(repeats: typing.SupportsInt | typing.SupportsIndex) -> float:
+    """
+    Million steps of cones a second, each two trilinear look-ups in a pyramid of half floats; best of `repeats`.
+    """
 def glossy(technique: TracedRays | GlossyCone, pyramid: Pyramid, gbuffer: GBuffer, scene: Scene, share: EveryPixel | Interleaved, seed: typing.SupportsInt | typing.SupportsIndex) -> GlossyLight:
     """
     Light that the glossy lobe reflects. A lobe follows its own pixel's view and material: its work is not shared.

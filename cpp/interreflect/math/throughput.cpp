@@ -49,6 +49,64 @@ float multiply_add(std::size_t steps) {
     return hn::GetLane(hn::SumOfLanes(d, all));
 }
 
+/// A cubic level of texels of four half floats, each row followed by a copy of its last texel; as the pyramid of voxels has them.
+struct TexelLevel {
+    const hwy::float16_t* texels;
+    int size;
+};
+
+/// Trilinear look-up: four loads of two neighbouring texels.
+HWY_INLINE auto look_up(const TexelLevel& level, float x, float y, float z) {
+    const hn::FixedTag<float, 4> d4;
+    const auto last = static_cast<float>(level.size - 1);
+    const auto inside = [last](float v) HWY_ATTR { return v < 0.0f ? 0.0f : v < last ? v : last; };
+    const float px = inside(x - 0.5f), py = inside(y - 0.5f), pz = inside(z - 0.5f);
+    const int ix = static_cast<int>(px), iy = static_cast<int>(py), iz = static_cast<int>(pz);
+    const auto fx = hn::Set(d4, px - static_cast<float>(ix));
+    const float fy = py - static_cast<float>(iy), fz = pz - static_cast<float>(iz);
+    const int row = 4 * (level.size + 1), slice = row * level.size;
+    const auto* p = level.texels + 4 * ix + row * iy + slice * iz;
+    const int dy = iy + 1 < level.size ? row : 0, dz = iz + 1 < level.size ? slice : 0;
+#if HWY_MAX_BYTES >= 32
+    const hn::FixedTag<float, 8> d8;
+    const hn::FixedTag<hwy::float16_t, 8> h8;
+    const auto pair = [&](int offset) HWY_ATTR { return hn::PromoteTo(d8, hn::LoadU(h8, p + offset)); };
+    const auto mix = [&](auto a, auto b, float t) HWY_ATTR { return hn::MulAdd(hn::Sub(b, a), hn::Set(d8, t), a); };
+    const auto texels = mix(mix(pair(0), pair(dy), fy), mix(pair(dz), pair(dy + dz), fy), fz);
+    const auto low = hn::LowerHalf(d4, texels), high = hn::UpperHalf(d4, texels);
+#else
+    const hn::FixedTag<hwy::float16_t, 4> h4;
+    const auto column = [&](int x4) HWY_ATTR {
+        const auto at = [&](int offset) HWY_ATTR { return hn::PromoteTo(d4, hn::LoadU(h4, p + x4 + offset)); };
+        const auto mix = [&](auto a, auto b, float t) HWY_ATTR { return hn::MulAdd(hn::Sub(b, a), hn::Set(d4, t), a); };
+        return mix(mix(at(0), at(dy), fy), mix(at(dz), at(dy + dz), fy), fz);
+    };
+    const auto low = column(0), high = column(4);
+#endif
+    return hn::MulAdd(hn::Sub(high, low), fx, low);
+}
+
+/// Marches one cone of 30 degrees through the levels, one after the other in `texels`, front to back.
+float march_cone(const hwy::float16_t* const* levels, int finest_size, const float* start, const float* direction, int steps) {
+    const hn::FixedTag<float, 4> d4;
+    auto seen = hn::Zero(d4);
+    float distance = 1.0f, width = 1.0f, scale = 1.0f;
+    int level = 0;
+    for (int step = 0; step < steps; ++step) {
+        const float x = start[0] + distance * direction[0], y = start[1] + distance * direction[1];
+        const float z = start[2] + distance * direction[2];
+        const auto fine = look_up({levels[level], finest_size >> level}, x * scale, y * scale, z * scale);
+        const auto coarse =
+            look_up({levels[level + 1], finest_size >> (level + 1)}, x * scale * 0.5f, y * scale * 0.5f, z * scale * 0.5f);
+        const auto texel = hn::MulAdd(hn::Sub(coarse, fine), hn::Set(d4, width * scale - 1.0f), fine);
+        seen = hn::MulAdd(texel, hn::Sub(hn::Set(d4, 1.0f), hn::Broadcast<3>(seen)), seen);
+        distance += 0.5f * width;
+        width = distance * 1.1547005f < 1.0f ? 1.0f : distance * 1.1547005f;
+        while (width * scale >= 2.0f) scale *= 0.5f, ++level;
+    }
+    return hn::GetLane(seen);
+}
+
 int width() { return static_cast<int>(hn::Lanes(hn::ScalableTag<float>()) * sizeof(float)); }
 
 }  // namespace interreflect::HWY_NAMESPACE
@@ -61,7 +119,9 @@ HWY_AFTER_NAMESPACE();
 
 #include <algorithm>
 #include <atomic>
+#include <cstring>
 
+#include "math/rng.h"
 #include "math/stopwatch.h"
 
 namespace interreflect {
@@ -70,6 +130,7 @@ namespace {
 HWY_EXPORT(sum);
 HWY_EXPORT(triad);
 HWY_EXPORT(multiply_add);
+HWY_EXPORT(march_cone);
 HWY_EXPORT(width);
 
 constexpr std::size_t piece = std::size_t{1} << 18;  // 1 MiB a task
@@ -123,6 +184,37 @@ double multiply_add_rate(int repeats) {
     const double best = fastest(
         repeats, [&] { oneapi::tbb::parallel_for(0, tasks, [&](int) { sink = HWY_DYNAMIC_DISPATCH(multiply_add)(steps); }); });
     return 2.0 * 12 * steps * tasks * (vector_bytes() / 4) / best * 1e-6;
+}
+
+double cone_step_rate(int repeats) {
+    constexpr int size = 128, level_count = 8, steps = 9, cones = 1 << 13;
+    const std::size_t halves = std::size_t{4} * size * size * (size + 1) * 8 / 7 + 4 * size * size;
+    const auto texels = hwy::AllocateAligned<hwy::float16_t>(halves);
+    std::memset(texels.get(), 0, halves * sizeof(hwy::float16_t));  // air: no cone ends early
+    const hwy::float16_t* levels[level_count];
+    for (std::size_t level = 0, first = 0; level < level_count; ++level) {
+        levels[level] = texels.get() + first;
+        const std::size_t n = size >> level;
+        first += 4 * n * n * (n + 1);
+    }
+    const int tasks = 16 * oneapi::tbb::this_task_arena::max_concurrency();
+    const double best = fastest(repeats, [&] {
+        oneapi::tbb::parallel_for(0, tasks, [&](int task) {
+            float sum = 0;
+            Rng rng(1, static_cast<std::uint32_t>(task));
+            float start[3], direction[3];
+            for (int cone = 0; cone < cones; ++cone) {
+                // Thirty-two neighbours start side by side and look the same way, as those of a tile of pixels do.
+                for (int k = 0; k < 3; ++k) {
+                    start[k] = cone % 32 == 0 ? size * rng.uniform() : start[k] + 0.1f;
+                    if (cone % 32 == 0) direction[k] = rng.uniform() - 0.5f;
+                }
+                sum += HWY_DYNAMIC_DISPATCH(march_cone)(levels, size, start, direction, steps);
+            }
+            sink = sum;
+        });
+    });
+    return 1e-3 * steps * cones * tasks / best;
 }
 
 int vector_bytes() { return HWY_DYNAMIC_DISPATCH(width)(); }
