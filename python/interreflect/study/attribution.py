@@ -41,7 +41,6 @@ class StageShare:
 
     error: half of what vanishes when this stage alone becomes exact, and half of what it adds where all others are exact (`alone`,
     `added`); low, high: 95 % interval over seeds. Negative: its error cancels another stage's. time: share of the frame.
-    exact_milliseconds: the frame's time with this stage alone exact.
     """
 
     stage: str
@@ -55,7 +54,6 @@ class StageShare:
     added: float = np.nan
     milliseconds: float = np.nan
     time: float = np.nan
-    exact_milliseconds: float = np.nan
     note: str = ""
 
 
@@ -168,7 +166,7 @@ def attribute(
     (own,) = measured(Study(name=title, methods=[method], repeats=5, max_repeats=15, **base), folder)
     groups = {same(method): own}
     if exact:
-        others = measured(Study(name=f"{title}, exact", methods=list(exact.values()), repeats=1, max_repeats=1, **base), folder)
+        others = measured(Study(name=f"{title}, exact", methods=list(exact.values()), repeats=0, **base), folder)
         groups |= zip(exact, others, strict=True)
     return _judge(method, scene, name, metric, plan, {key: _whole(groups[same(variant)]) for key, variant in variants.items()}, folder)
 
@@ -222,9 +220,8 @@ def _judge(
     errors = {key: np.array([record.metrics[metric] for record in group]) - truth_noise for key, group in groups.items()}
     error = float(errors[AS_IS].mean())
     share_of = 1 / error if error > 0 else np.nan  # an error within the truth's noise has no shares
-    times = {key: float(np.median([record.milliseconds for record in group])) for key, group in groups.items()}
     spent = _stage_times(groups[AS_IS])
-    frame = times[AS_IS]
+    frame = float(np.median([record.milliseconds for record in groups[AS_IS]]))
     noises = {key: _seed_noise(records, group, metric) for key, group in groups.items()}
     stages = []
     for stage in _in_order(spent, plan):
@@ -237,7 +234,7 @@ def _judge(
             own = max(0.0, (noises[stage] - noises[AS_IS] + noises[ALL_EXACT] - noises[f"not {stage}"]) / 2)
             alone = errors[AS_IS] - errors[stage] + own
             added = errors[f"not {stage}"] - errors[ALL_EXACT] + own
-            share = dataclasses.replace(share, exact_milliseconds=times[stage], **_shares(alone, added, share_of, truth_noise))
+            share = dataclasses.replace(share, **_shares(alone, added, share_of, truth_noise))
         stages.append(share)
     owned = sum(stage.error for stage in stages if stage.status in MEASURED)
     rest = (float(errors[ALL_EXACT].mean()) - noises[ALL_EXACT]) * share_of if any(s.status in MEASURED for s in stages) else 1.0

@@ -75,8 +75,8 @@ def canonical(content: Any) -> str:
 
 
 def checked(content: Any, version: int) -> bytes:
-    """A JSON text that holds content, its format version and its checksum."""
-    text = canonical(content).encode()
+    """A JSON text that holds content, keys in their own order, its format version and its checksum."""
+    text = json.dumps(content, separators=(",", ":"), ensure_ascii=False, allow_nan=False).encode()
     return b'{"format":%d,"checksum":"%s","content":%s}' % (version, hashlib.sha256(text).hexdigest().encode(), text)
 
 
