@@ -85,7 +85,10 @@ class ContributionSink {
     std::vector<EmissionContribution> emission;
     std::uint64_t samples = 0;
 
-    void begin(const VoxelTriangle& triangle) { triangle_ = &triangle; }
+    void begin(const VoxelTriangle& triangle) {
+        triangle_ = &triangle;
+        emits_ = triangle.material->emits();
+    }
     /// A sample of the current triangle at `position` voxels that stands for `area`; dropped outside the domain.
     [[gnu::always_inline]] void add(const vec3& position, float area, bool solid, const vec3& albedo, const vec3& emitted) {
         const vec3 floor = glm::floor(position);
@@ -98,7 +101,8 @@ class ContributionSink {
         if (!inside(floor)) return;
         ++samples;
         const float area = triangle_->area, share = solid ? area : 0.0f;
-        keep(domain_.cell(ivec3(floor)), share, area, albedo * share, (position - floor - 0.5f) * share, emitted * share);
+        keep(domain_.cell(ivec3(floor)), vec4(albedo, 1.0f) * share, vec4((position - floor - 0.5f) * share, area),
+             emitted * share);
     }
     /// The same with the cell given, which lies in the domain, and the position from its centre.
     [[gnu::always_inline]] void add(const ivec3& at, const vec3& local, float area, bool solid, const vec3& albedo,
@@ -113,12 +117,10 @@ class ContributionSink {
             slot = Slot{};
             slot.cell = cell;
         }
-        slot.total += area;
-        if (!solid) return;
-        slot.area += area;
-        slot.albedo += albedo * area;
-        slot.position += local * area;
-        slot.emission += emitted * area;
+        const float share = solid ? area : 0.0f;
+        slot.albedo += vec4(albedo, 1.0f) * share;
+        slot.position += vec4(local * share, area);
+        if (emits_) slot.emission += emitted * share;
     }
     void end() {
         for (; used_ != 0; used_ &= used_ - 1) flush(slots_[static_cast<unsigned>(std::countr_zero(used_))]);
@@ -132,25 +134,33 @@ class ContributionSink {
   private:
     struct Slot {
         std::uint32_t cell = 0;
-        float area = 0, total = 0;
-        vec3 albedo{0}, position{0}, emission{0};
+        vec4 albedo{0}, position{0};  // sums; the fourth ones: of the solid part's area, and of all area
+        vec3 emission{0};
     };
     bool inside(const vec3& floor) const {
         const vec3 n(domain_.cells);
         return floor.x >= 0.0f && floor.y >= 0.0f && floor.z >= 0.0f && floor.x < n.x && floor.y < n.y && floor.z < n.z;
     }
-    void flush(const Slot& slot) { keep(slot.cell, slot.area, slot.total, slot.albedo, slot.position, slot.emission); }
-    [[gnu::always_inline]] void keep(std::uint32_t cell, float area, float total, const vec3& albedo, const vec3& position,
-                                     const vec3& emitted) {
-        surface.push_back({cell, area, total, albedo, position, triangle_->normal, triangle_->offset,
-                           triangle_->material->two_sided ? 1U : 0U});
-        if (area > 0.0f) marks_.mark(cell);
-        if (emitted.x > 0.0f || emitted.y > 0.0f || emitted.z > 0.0f) emission.push_back({cell, emitted});
+    void flush(const Slot& slot) { keep(slot.cell, slot.albedo, slot.position, slot.emission); }
+    [[gnu::always_inline]] void keep(std::uint32_t cell, const vec4& albedo, const vec4& position, const vec3& emitted) {
+        // Field by field: a whole value would be put together elsewhere and copied.
+        Contribution& c = surface.emplace_back();
+        c.cell = cell;
+        c.area = albedo.w;
+        c.total = position.w;
+        c.albedo = vec3(albedo);
+        c.position = vec3(position);
+        c.normal = triangle_->normal;
+        c.offset = triangle_->offset;
+        c.back = triangle_->material->two_sided ? 1U : 0U;
+        if (albedo.w > 0.0f) marks_.mark(cell);
+        if (emits_ && max_component(emitted) > 0.0f) emission.push_back({cell, emitted});
     }
 
     const Domain& domain_;
     CellMarks& marks_;
     const VoxelTriangle* triangle_ = nullptr;
+    bool emits_ = false;
     unsigned used_ = 0;
     std::array<Slot, 8> slots_;
 };
