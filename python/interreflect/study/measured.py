@@ -9,8 +9,10 @@ from typing import Any
 
 import interreflect.cache as cache
 from interreflect.study.interface import Method, Scene
+from interreflect.study.plan import cell_key
 from interreflect.study.records import Record
 from interreflect.study.run import run
+from interreflect.study.store import Store
 from interreflect.study.study import Study
 
 
@@ -22,10 +24,15 @@ def study_folder(tool: str, scene: Scene, *identity: Any) -> Path:
 
 
 def measured(study: Study, folder: str | Path) -> list[tuple[Record, ...]]:
-    """The records of a study of one view, method by method, each in the order of the seeds. What failed is among them."""
-    records = run(study, folder)
-    if len(records) != len(study.cells()):
-        raise ValueError(f"{folder}: {records.missing} cells are missing and {len(records.damaged)} damaged")
+    """The records of a study of one view, method by method, each in the order of the seeds. What failed is among them.
+
+    Read cell by cell, not by the folder's list, which another tool's run on the same folder may have replaced meanwhile.
+    """
+    run(study, folder)
+    store, cells = Store(folder), study.cells()
+    records = [record for cell in cells if (record := store.read(cell_key(study, cell))) is not None]
+    if len(records) != len(cells):
+        raise ValueError(f"{folder}: {len(cells) - len(records)} of {len(cells)} cells cannot be read")
     count = len(study.seeds)
     return [tuple(records[index : index + count]) for index in range(0, len(records), count)]
 
