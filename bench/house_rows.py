@@ -19,13 +19,14 @@ from bench.rows import Row, absent, within
 from bench.sponza import PATH
 from bench.timing import least, timed
 from interreflect.scenes.load import find
+from interreflect.study.store import Store
 
 ROOT = Path(__file__).resolve().parent.parent
 MEBIBYTES = 600.0
 
 
 def rows() -> list[Row]:
-    return [study_overhead(), *start_rows(), *loading_rows()]
+    return [study_overhead(), records_loading(), *start_rows(), *loading_rows()]
 
 
 def study_overhead(cells: int = 60) -> Row:
@@ -48,6 +49,24 @@ def study_overhead(cells: int = 60) -> Row:
     if not (records.table["status"] == "ok").all():
         raise RuntimeError(f"a cell of the study failed: {records.table['failure'].dropna().tolist()}")
     return within("study layer, a cell", 1e3 * own / cells, None, 5, note=f"mean of {cells} cells, pictures kept")
+
+
+def records_loading(count: int = 10_000) -> Row:
+    """Reading the records of a study of many cells, pictures apart."""
+    study = ir.Study(
+        name="many", scenes=[ir.scenes.cornell_box()], methods=[ir.methods.VoxelConeTracing(grid=ir.Grid(resolution=16))], size=(32, 24),
+        reference=ir.Reference(noise=0.5, max_spp=16), images=False,
+    )  # fmt: skip
+    with tempfile.TemporaryDirectory() as folder, mock.patch.dict(os.environ, {"INTERREFLECT_CACHE": folder}):
+        store = Store(Path(folder) / "study")
+        record = ir.run(study, store.folder)[0]
+        copies = [dataclasses.replace(record, key=f"{k:032x}", seed=k) for k in range(count)]
+        with mock.patch("os.fsync"):  # ten thousand of them take minutes, and no power is cut here
+            for copy in copies:
+                store.write(copy, None, None)
+        store.begin(study.name, [{"key": copy.key, "scene": "many", "camera": "first"} for copy in copies])
+        milliseconds = least(timed(lambda: len(ir.load_records(store.folder))), repeats=3)[0]
+    return within("10,000 records to load", milliseconds, None, 1000, note="the files are in the system's page cache")
 
 
 def start_rows() -> list[Row]:

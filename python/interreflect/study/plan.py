@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import functools
 import hashlib
+import sys
 from collections import deque
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack
@@ -58,7 +59,9 @@ class Plan:
     def progress(self) -> Any:
         from tqdm import tqdm
 
-        return tqdm(total=len(self.cells), desc=self.study.name, unit="cell", disable=None)
+        # A notebook's output is no terminal, where tqdm is silent by default, yet shows bars.
+        silent = False if "ipykernel" in sys.modules else None
+        return tqdm(total=len(self.cells), desc=self.study.name, unit="cell", disable=silent)
 
     def open_cells(self) -> Iterator[int | None]:
         """Cells to measure, each claimed before it comes; None where other runs have all that are left, for the caller to wait."""
