@@ -8,7 +8,7 @@ import difflib
 import inspect
 import runpy
 import traceback
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -170,7 +170,7 @@ def _kebab(name: str) -> str:
 
 
 def _knob_row(knob: dict[str, Any], prefix: str = "") -> Row:
-    return "", prefix + knob["name"], knob["type"], knob["unit"], _param_range(knob), repr(knob["default"]), knob["doc"]
+    return "", prefix + knob["name"], knob["type"], knob["unit"], knob_range(knob), repr(knob["default"]), knob["doc"]
 
 
 def _choices_of(stage: str) -> str:
@@ -188,7 +188,8 @@ def _range(limits: Any) -> str:
     return f"{low}{limits.minimum:g}, {limits.maximum:g}]".replace("[-inf", "(-inf").replace("inf]", "inf)")
 
 
-def _param_range(param: dict[str, Any]) -> str:
+def knob_range(param: Mapping[str, Any]) -> str:
+    """What a technique's knob may be: choices, techniques, or an interval."""
     if param.get("choices"):
         return ", ".join(map(str, param["choices"]))
     if param.get("techniques"):

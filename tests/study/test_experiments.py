@@ -15,7 +15,10 @@ EXPERIMENTS = sorted(path for path in FOLDER.glob("*.py") if path.stem not in ("
 
 def smaller(study):
     """The same question of one scene, with few pixels, seeds and samples, and grids that take no time."""
-    methods = [method for method in study.methods if method.knobs().get("grid.resolution", 0) <= 32]
+    methods = [method.replace({"grid.resolution": 16}) if "grid.resolution" in method.knobs() else method for method in study.methods]
+    methods = list({repr(method): method for method in methods}.values())
+    heavy = ("march.cones", "march.samples", "spp")
+    methods = [method for method in methods if all(method.knobs().get(knob, 0) <= 24 for knob in heavy)][:8]
     return dataclasses.replace(
         study,
         scenes=study.scenes[:1],

@@ -4,6 +4,17 @@ Colours are those of Okabe and Ito, told apart with any colour vision; methods a
 dark page.
 """
 
-from interreflect.charts.records import ERROR_RANGE, images, label, pictured, speed_accuracy, stages, varied, view_title
+from interreflect.charts.curves import curves
+from interreflect.charts.records import (
+    ERROR_RANGE,
+    axis_label,
+    images,
+    label,
+    pictured,
+    speed_accuracy,
+    stages,
+    varied,
+    view_title,
+)
 
-__all__ = ["ERROR_RANGE", "images", "label", "pictured", "speed_accuracy", "stages", "varied", "view_title"]
+__all__ = ["ERROR_RANGE", "axis_label", "curves", "images", "label", "pictured", "speed_accuracy", "stages", "varied", "view_title"]

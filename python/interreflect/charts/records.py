@@ -242,7 +242,9 @@ def label(records: Records, row: Any) -> str:
 
 
 def _knobs(row: Any, names: Mapping[str, Sequence[str]]) -> str:
-    return ", ".join(_short(name, row[name]) for name in names.get(row["method"], ()))
+    """The knobs in words; those that this row's technique does not have are left out."""
+    values = [(name, row.get(name)) for name in names.get(row["method"], ())]
+    return ", ".join(_short(name, value) for name, value in values if value is not None and value == value)
 
 
 def _short(name: str, value: Any) -> str:

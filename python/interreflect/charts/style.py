@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING
+from functools import cache
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -20,10 +21,23 @@ def theme_of(dark: bool) -> dict[str, str]:
     return DARK if dark else LIGHT
 
 
-def new_figure(size: tuple[float, float], dark: bool) -> Figure:
+@cache
+def _paper_figure() -> type[Figure]:
+    from matplotlib import rc_context
     from matplotlib.figure import Figure
 
-    return Figure(figsize=size, layout="constrained", facecolor=theme_of(dark)["paper"], dpi=120)
+    class PaperFigure(Figure):
+        """A figure whose PDF, PS and SVG hold their fonts, as papers ask: TrueType outlines (type 42) and text that stays text."""
+
+        def savefig(self, *given: Any, **named: Any) -> None:
+            with rc_context({"pdf.fonttype": 42, "ps.fonttype": 42, "svg.fonttype": "none", "pdf.use14corefonts": False}):
+                super().savefig(*given, **named)
+
+    return PaperFigure
+
+
+def new_figure(size: tuple[float, float], dark: bool) -> Figure:
+    return _paper_figure()(figsize=size, layout="constrained", facecolor=theme_of(dark)["paper"], dpi=120)
 
 
 def dress(ax: Axes, dark: bool) -> Axes:

@@ -110,6 +110,11 @@ class Method(ABC):
         A method with memory gives its history as a third; the next frame finds it in `view.history`, None in the first.
         """
 
+    def _repr_html_(self) -> str:
+        from interreflect import display
+
+        return display.method(self)
+
     def exact_knobs(self) -> dict[str, Any]:
         """Field -> technique for every field that holds a technique (what may be replaced by its exact counterpart)."""
         values = {field.name: getattr(self, field.name) for field in dataclasses.fields(self)}  # type: ignore[arg-type]

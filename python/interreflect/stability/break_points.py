@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from interreflect import cache
+from interreflect.progress import bar
 from interreflect.stability.crossing import BREAKS, REVERSED, Crossing, Point, find, point_of
 from interreflect.stability.failure import Failure, Reading
 from interreflect.study.files import canonical, replacing
@@ -148,8 +149,6 @@ def atlas(
     folder: where every measured setting is kept, so that an interrupted atlas resumes (None: the user's cache). A method that raises
     is a cell that says so. ValueError for no methods or for a sweep of fewer than two values.
     """
-    from tqdm import tqdm
-
     from interreflect.stability import failures as all_failures
 
     rows, numbers = tuple(all_failures if failures is None else failures), tuple(seeds)
@@ -158,7 +157,7 @@ def atlas(
     store = _Store(cache.folder("atlas") if folder is None else Path(folder), numbers, threads)
     pairs = [(name, method, row) for row in rows for name, method in labels(methods).items()]
     cells = []
-    with tqdm(pairs, desc="atlas", unit="cell", disable=None) as progress:
+    with bar(pairs, desc="atlas", unit="cell") as progress:
         for name, method, row in progress:
             progress.set_postfix_str(f"{row.name}: {name}")
             cells.append(_cell(store, name, method, row, sweep, bisections))

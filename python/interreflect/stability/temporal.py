@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from interreflect import metrics
 from interreflect.frame import Image
 from interreflect.motion import Motion
+from interreflect.progress import bar
 from interreflect.scenes.camera import Camera
 from interreflect.scenes.scene import Scene
 from interreflect.stability.not_finite import NotFinite
@@ -196,13 +197,11 @@ def compare(
     frames: Sequence[Any], method: Any, scene: Scene, motion: Motion, size: tuple[int, int], wanted: Reference = SAMPLES, pop: float = POP
 ) -> Played:
     """Frames of a motion that were rendered already, beside the truth. NotFinite, a ValueError, for a picture with such numbers."""
-    from tqdm import tqdm
-
     for k, frame in enumerate(frames):
         if wrong := int(frame.image.size - np.isfinite(frame.image).sum()):
             raise NotFinite(f"frame {k} holds {wrong} numbers that are not finite", frame.image)
     views = [motion.at(scene, k) for k in range(motion.frames)]
-    with tqdm(views, desc="truths", unit="frame", disable=None, leave=False) as progress:
+    with bar(views, desc="truths", unit="frame", leave=False) as progress:
         truths = [frame_truth(moved, camera, size, method.bounces, wanted) for moved, camera in progress]
     seen = [surfaces(moved, camera, size) for moved, camera in views]
     scale = float(np.mean([truth.image.mean(dtype=np.float64) for truth in truths]))

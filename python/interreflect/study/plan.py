@@ -5,7 +5,6 @@ from __future__ import annotations
 import dataclasses
 import functools
 import hashlib
-import sys
 from collections import deque
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack
@@ -15,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from interreflect.machine import about
+from interreflect.progress import bar
 from interreflect.study.files import canonical
 from interreflect.study.interface import Method, Scene
 from interreflect.study.locks import Claims
@@ -57,11 +57,7 @@ class Plan:
         self._stack.__exit__(*failure)
 
     def progress(self) -> Any:
-        from tqdm import tqdm
-
-        # A notebook's output is no terminal, where tqdm is silent by default, yet shows bars.
-        silent = False if "ipykernel" in sys.modules else None
-        return tqdm(total=len(self.cells), desc=self.study.name, unit="cell", disable=silent)
+        return bar(total=len(self.cells), desc=self.study.name, unit="cell")
 
     def open_cells(self) -> Iterator[int | None]:
         """Cells to measure, each claimed before it comes; None where other runs have all that are left, for the caller to wait."""

@@ -16,6 +16,7 @@ import numpy.typing as npt
 
 import interreflect.cache as cache
 from interreflect import metrics
+from interreflect.progress import bar
 from interreflect.scenes.camera import checked_size
 from interreflect.study.files import canonical, set_aside
 from interreflect.study.interface import Frame, Image, Scene
@@ -202,10 +203,8 @@ class _Progress:
     """Shows how far a truth is, and keeps its halves now and then, so that an interruption costs seconds and not the whole."""
 
     def __init__(self, wanted: Reference, path: Path) -> None:
-        from tqdm import tqdm
-
         self.path, self.saved = path, time.monotonic()
-        self.bar = tqdm(total=wanted.max_spp, desc="truth", unit="spp", leave=False, delay=1, disable=None)
+        self.bar = bar(total=wanted.max_spp, desc="truth", unit="spp", leave=False, delay=1)
 
     def __call__(self, halves: tuple[Half, Half], truth: Truth) -> None:
         self.bar.update(truth.spp - self.bar.n)

@@ -11,8 +11,8 @@ from types import CodeType
 PACKAGE = Path(__file__).resolve().parent.parent
 # Python files that draw, list or read, or whose effect is in the scene's hash already.
 WITHOUT_EFFECT = {
-    "__init__.py", "_worker.py", "cache.py", "catalogue.py", "charts", "cli.py", "demo.py", "errors.py", "images.py", "machine.py",
-    "metrics.py", "scenes", "stability", "study",
+    "__init__.py", "_worker.py", "cache.py", "catalogue.py", "charts", "cli.py", "demo.py", "display.py", "errors.py", "images.py",
+    "machine.py", "metrics.py", "progress.py", "scenes", "stability", "study",
 }  # fmt: skip
 
 

@@ -99,6 +99,11 @@ class Study:
             if not any(name in scene.cameras for name in self.cameras):
                 raise ValueError(f"Study.scenes[{index}] ({scene.name!r}) has none of the cameras {list(self.cameras)}")
 
+    def _repr_html_(self) -> str:
+        from interreflect import display
+
+        return display.study(self)
+
     def cells(self) -> list[Cell]:
         """Every cell, in the order of the table: scene, camera, method, seed."""
         return [
