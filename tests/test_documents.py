@@ -12,10 +12,14 @@ import interreflect as ir
 ROOT = Path(__file__).parents[1]
 CONTRACT = ROOT.parent / "shared" / "API.md"
 # Sections of the contract whose parts exist.
-SECTIONS = ("scenes", "one picture", "truth", "stages by hand", "studies")
+SECTIONS = ("scenes", "one picture", "truth", "stages by hand", "studies", "the three questions")
 # The contract allows smaller sizes, fewer samples and repeats.
 SMALLER = {
     "(640, 360)": "(48, 32)",
+    "(320, 180)": "(32, 18)",
+    "[method], ir.stability.failures)": "[method], ir.stability.failures[:1])",
+    "ir.sensitivity(method, scene)": "ir.sensitivity(ir.methods.ConstantAmbient(), scene, size=(16, 9))",
+    "ir.advise(scene)": "ir.advise(scene, size=(32, 18))",
     "max_spp=4096": "max_spp=8",
     "[32, 64, 128, 256]": "[8, 16]",
     "resolution=128": "resolution=16",
@@ -41,6 +45,9 @@ def test_the_program_in_the_readme_runs(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     code = program((ROOT / "README.md").read_text())
     smaller = {"(320, 180)": "(48, 32)", "max_spp=64": "max_spp=4", "[16, 32, 64]": "[8, 16]", "resolution=64": "resolution=16"}
+    smaller |= {"(160, 90)": "(32, 18)", "frames=8": "frames=2"}
+    smaller |= {long: SMALLER[long] for long in ("[method], ir.stability.failures)", "ir.advise(scene)")}
+    smaller |= {"ir.sensitivity(method,": "ir.sensitivity(ir.methods.ConstantAmbient(),"}
     for long, short in smaller.items():
         assert long in code
         code = code.replace(long, short)
