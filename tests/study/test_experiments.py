@@ -15,10 +15,13 @@ EXPERIMENTS = sorted(path for path in FOLDER.glob("*.py") if path.stem not in ("
 
 def smaller(study):
     """The same question of one scene, with few pixels, seeds and samples, and grids that take no time."""
-    methods = [method.replace({"grid.resolution": 16}) if "grid.resolution" in method.knobs() else method for method in study.methods]
-    methods = list({repr(method): method for method in methods}.values())
-    heavy = ("march.cones", "march.samples", "spp")
-    methods = [method for method in methods if all(method.knobs().get(knob, 0) <= 24 for knob in heavy)][:8]
+    less = {"grid.resolution": lambda n: 8 + n // 16, "march.cones": lambda n: 3 + n // 8, "march.samples": lambda n: 1 + n // 16}
+    methods = []
+    for method in study.methods:
+        knobs = method.knobs()
+        changed = method.replace({name: shrink(knobs[name]) for name, shrink in less.items() if name in knobs})
+        if changed not in methods and knobs.get("spp", 0) <= 16:
+            methods.append(changed)
     return dataclasses.replace(
         study,
         scenes=study.scenes[:1],

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from interreflect.charts.records import axis_label, view_title
+from interreflect.charts.records import axis_label, few_ticks, view_title
 from interreflect.charts.style import COLOURS, MARKERS, add_legend, dress, new_figure, theme_of
 from interreflect.study.configurations import MERIT, NOISE_OF, VIEW, configurations
 from interreflect.study.records import Records
@@ -26,7 +26,8 @@ def curves(
     x: a knob or a measured column, such as "grid.resolution" or "stage.march.milliseconds"; rows without it are left out. ValueError
     where nothing is left.
     """
-    table = configurations(records).dropna(subset=[x])
+    table = configurations(records)
+    table = table.dropna(subset=[x]) if x in table else table.head(0)
     if table.empty:
         raise ValueError(f"study {records.study!r} has no measured record with {x!r}")
     names = dict.fromkeys(_name(row, by) for _, row in table.iterrows())
@@ -37,7 +38,7 @@ def curves(
     for ax, (view, rows) in zip(panels, views, strict=True):
         for name, points in rows.groupby([_name(row, by) for _, row in rows.iterrows()], sort=False):
             _line(ax, points.sort_values(x), x, y, str(name), *styles[str(name)])
-        _dress(ax, rows, x, y, dark)
+        _dress(ax, rows, x, y, x in records.knob_columns, dark)
         ax.set(title=view_title(view), xlabel=x_label or axis_label(x), ylabel=axis_label(y))
         dress(ax, dark)
     add_legend(figure, panels, dark)
@@ -55,15 +56,16 @@ def _line(ax: Axes, points: pd.DataFrame, x: str, y: str, name: str, colour: str
     ax.errorbar(points[x].astype(float), level, yerr=np.nan_to_num(np.maximum(reach, 0)), label=name, **style)
 
 
-def _dress(ax: Axes, rows: pd.DataFrame, x: str, y: str, dark: bool) -> None:
+def _dress(ax: Axes, rows: pd.DataFrame, x: str, y: str, knob: bool, dark: bool) -> None:
     values = sorted(rows[x].astype(float).unique())
     if min(values) > 0:
         ax.set_xscale("log")
-    if len(values) <= 10:
-        ax.set_xticks(values, labels=[f"{value:g}" for value in values])
-        ax.minorticks_off()
     if y != MERIT:
         ax.set_yscale("log")
+    few_ticks(ax, y != MERIT)
+    if knob:
+        ax.set_xticks(values, labels=[f"{value:g}" for value in values])
+        ax.minorticks_off()
     if y in NOISE_OF:
         noise = float(rows[NOISE_OF[y]].max())
         ax.axhline(noise, color=theme_of(dark)["faint"], linestyle=":", linewidth=0.9, label="the truth's noise")

@@ -64,7 +64,7 @@ def speed_accuracy(records: Records, x: str = "milliseconds", y: str = "relmse",
             _draw_intervals(ax, points, x, y, styles[str(method)][0])
         _name_points(ax, best.head(NAMED_POINTS), x, y, varied(records), dark)
         _noise_band(ax, rows, y, dark)
-        _few_ticks(ax, y != MERIT)
+        few_ticks(ax, y != MERIT)
         ax.set_title(view_title(view), fontsize=9)
         ax.set(xlabel=axis_label(x), ylabel=axis_label(y))
     add_legend(figure, axes, dark)
@@ -215,7 +215,7 @@ def _noise_band(ax: Axes, rows: pd.DataFrame, y: str, dark: bool) -> None:
     ax.set_ylim(lowest / 2, float(rows[y].max()) * 2)
 
 
-def _few_ticks(ax: Axes, also_y: bool) -> None:
+def few_ticks(ax: Axes, also_y: bool) -> None:
     """Plain numbers at 1, 2 and 5 where an axis spans less than two decades; powers of ten where it spans more."""
     from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
