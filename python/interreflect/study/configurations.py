@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -36,6 +36,8 @@ def configurations(records: Records) -> pd.DataFrame:
     what the stages' results hold. peak_memory_bytes: of the process. `work.<count>`: work of all stages. Cells that failed or are not
     finite are left out, and so are configurations of which any seed did.
     """
+    import pandas as pd
+
     by = [*VIEW, "configuration"]
     table = records.table.assign(configuration=[record.configuration for record in records])
     table["record"] = np.array([*records, None], object)[:-1]  # None keeps numpy from looking into records
@@ -47,11 +49,14 @@ def configurations(records: Records) -> pd.DataFrame:
     how = dict.fromkeys(kept.columns.difference([*by, "record"], sort=False), "first")
     how |= {name: "median" if "milliseconds" in name else "mean" for name in measured}
     grouped = kept.astype(dict.fromkeys(measured, float)).groupby(by, sort=False)
-    found = grouped.agg(how).assign(seeds=grouped.size())
+    found = grouped.agg(how)
+    added: dict[str, Any] = {"seeds": grouped.size()}
     for name in WITH_INTERVALS:
-        found = found.assign(**_interval(name, [mean_interval(group.to_numpy(float)) for _, group in grouped[name]]))
+        added |= _interval(name, [mean_interval(group.to_numpy(float)) for _, group in grouped[name]])
     times = [median_interval(np.concatenate([_times(record) for record in group])) for _, group in grouped["record"]]
-    return found.assign(**_interval("milliseconds", times)).reset_index()
+    added |= _interval("milliseconds", times)
+    found = found.drop(columns=list(added), errors="ignore")  # a record's own interval gives way to that of all its seeds
+    return pd.concat([found, pd.DataFrame(added, index=found.index)], axis=1).reset_index()
 
 
 def _with_sums(table: pd.DataFrame) -> pd.DataFrame:
