@@ -178,7 +178,8 @@ py::object bind_technique(py::module_& m) {
             return py::type::of(self)(**all);
         },
         "The same technique with some knobs changed.");
-    cls.def("_repr_html_", [](const py::object& self) { return py::module_::import("interreflect.display").attr("technique")(self); });
+    cls.def("_repr_html_",
+            [](const py::object& self) { return py::module_::import("interreflect.display").attr("technique")(self); });
     cls.def("__reduce__", [keywords](const py::object& self) {
         const auto rebuild = py::module_::import("interreflect._core").attr("_rebuild");
         return py::make_tuple(rebuild, py::make_tuple(py::type::of(self), keywords(self.cast<const T&>())));

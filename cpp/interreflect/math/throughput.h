@@ -13,8 +13,8 @@ double read_bandwidth(int repeats, std::size_t floats = throughput_floats);
 double triad_bandwidth(int repeats, std::size_t floats = throughput_floats);
 /// Single-precision fused multiply-adds by all threads on the widest vectors there are, two operations each, GFLOP/s.
 double multiply_add_rate(int repeats);
-/// Steps of cones, each two trilinear look-ups of eight texels of four half floats in neighbouring levels of a 128^3 pyramid: what
-/// bounds them is the loads, which a rate of multiply-adds does not tell. Million a second by all threads.
+/// Steps of cones, each two trilinear look-ups of eight texels of four half floats in neighbouring levels of a 128^3 pyramid:
+/// what bounds them is the loads, which a rate of multiply-adds does not tell. Million a second by all threads.
 double cone_step_rate(int repeats);
 /// Bytes of the vectors that the rates above were measured with.
 int vector_bytes();
