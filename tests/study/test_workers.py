@@ -84,10 +84,26 @@ def test_a_worker_that_cannot_start_stops_the_study_with_its_reason(tmp_path, mo
         run(study_of("ok"), tmp_path / "r")
 
 
-def script(folder, body):
-    """A script without a `__main__` guard, with a method of its own."""
+@pytest.fixture
+def script():
+    """Starts scripts, and ends at last those that still run: one that a failed test left would keep its locks from the next."""
+    started = []
+
+    def start(folder, body):
+        started.append(started_script(folder, body))
+        return started[-1]
+
+    yield start
+    for process in started:
+        process.kill()
+        process.wait()
+
+
+def started_script(folder, body):
+    """A script without a `__main__` guard, with a method of its own. A shell's background job ignores interrupts: the script must not."""
     code = f"""
-        import pathlib, sys, time
+        import pathlib, signal, sys, time
+        signal.signal(signal.SIGINT, signal.default_int_handler)
         sys.path.insert(0, {str(HERE)!r})
         from study_fakes import Fake, FakePrepared, Scene, use_fake_truth
         from interreflect.study.run import run
@@ -122,14 +138,14 @@ def wait_until(condition, seconds=30):
         time.sleep(0.002)
 
 
-def test_a_method_of_a_script_without_a_main_guard_is_measured(tmp_path):
+def test_a_method_of_a_script_without_a_main_guard_is_measured(tmp_path, script):
     process = script(tmp_path, RUN.format(time=0))
     assert process.wait(60) == 0, process.stderr.read()
     assert load_records(tmp_path / "r")[0].status == "ok"
 
 
 @pytest.mark.parametrize("to_group", [False, True])
-def test_an_interrupt_is_honoured_within_a_fifth_of_a_second_and_leaves_no_worker(tmp_path, to_group):
+def test_an_interrupt_is_honoured_within_a_fifth_of_a_second_and_leaves_no_worker(tmp_path, to_group, script):
     process = script(tmp_path, f"import os; os.setpgid(0, 0); {RUN.format(time=600)}")
     wait_until((tmp_path / "began").exists)
     (worker,) = workers_of(process)
@@ -141,7 +157,7 @@ def test_an_interrupt_is_honoured_within_a_fifth_of_a_second_and_leaves_no_worke
     assert "KeyboardInterrupt" in process.stderr.read()
 
 
-def test_a_worker_ends_with_its_parent_in_the_middle_of_a_cell(tmp_path):
+def test_a_worker_ends_with_its_parent_in_the_middle_of_a_cell(tmp_path, script):
     process = script(tmp_path, RUN.format(time=600))
     wait_until((tmp_path / "began").exists)
     (worker,) = workers_of(process)
@@ -151,7 +167,7 @@ def test_a_worker_ends_with_its_parent_in_the_middle_of_a_cell(tmp_path):
 
 
 @pytest.mark.usefixtures("fake_truth")
-def test_two_runs_share_a_folder_without_measuring_a_cell_twice(tmp_path, monkeypatch):
+def test_two_runs_share_a_folder_without_measuring_a_cell_twice(tmp_path, monkeypatch, script):
     monkeypatch.setenv("STUDY_FAKES_RENDERS", str(tmp_path / "renders"))
     runs = [script(tmp_path, SHARED) for _ in range(2)]
     for process in runs:
