@@ -3,6 +3,7 @@
 from matplotlib.figure import Figure
 
 import interreflect as ir
+from interreflect.charts.style import COLOURS
 
 
 def scenes() -> list[ir.Scene]:
@@ -48,7 +49,7 @@ def chart(records: ir.Records) -> Figure:
     table = records.table[records.table["status"] == "ok"]
     panels = list(table.groupby("scene", sort=False))
     for axes, (scene, rows) in zip(figure.subplots(1, len(panels), squeeze=False)[0], panels, strict=True):
-        for (method, points), colour in zip(rows.groupby("method", sort=False), ir.charts.COLOURS, strict=False):
+        for (method, points), colour in zip(rows.groupby("method", sort=False), COLOURS, strict=False):
             within = points.sort_values("milliseconds")
             least = within["relmse"].cummin()
             axes.step([*within["milliseconds"], 1000], [*least, least.iloc[-1]], where="post", color=colour, label=str(method))

@@ -6,6 +6,7 @@ from attribution_fakes import Planted, Tint, Tinted
 from study_fakes import Scene
 
 import interreflect as ir
+from interreflect import _core
 from interreflect.study.attribution import (
     EXACT,
     FIXED,
@@ -18,6 +19,15 @@ from interreflect.study.attribution import (
     counterpart_of,
 )
 from interreflect.study.reference import Reference
+
+# Importing the fakes made their stages known, as workers need it; here only the tests of this file shall see them.
+TINTS = {stage: _core.stages.pop(stage) for stage in ("first_tint", "second_tint")}
+
+
+@pytest.fixture(autouse=True)
+def tints(monkeypatch):
+    for stage, entry in TINTS.items():
+        monkeypatch.setitem(_core.stages, stage, entry)
 
 SIZE = (24, 16)
 GOOD = Reference(noise=1e-5, max_spp=4096)

@@ -7,6 +7,7 @@
 #endif
 
 #include "shading/emitter_kernel-inl.h"
+#include "visibility/camera_lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace interreflect {
@@ -210,7 +211,7 @@ void primary_rays_lanes(const CameraRays& camera, int x0, int y0, const PairTabl
         const Vector row = hn::ConvertTo(d, hn::ShiftRight<log_tile>(pixel));
         const Vector x = hn::Add(hn::Add(number(static_cast<float>(x0)), column), place.x);
         const Vector y = hn::Add(hn::Add(number(static_cast<float>(y0)), row), place.y);
-        const Vec3 direction = unit(moved(moved(same(camera.corner), same(camera.right_step), x), same(camera.down_step), y));
+        const Vec3 direction = unit(towards_places(camera, x, y));
         hn::StoreU(direction.x, d, steps.direction.x + i);
         hn::StoreU(direction.y, d, steps.direction.y + i);
         hn::StoreU(direction.z, d, steps.direction.z + i);

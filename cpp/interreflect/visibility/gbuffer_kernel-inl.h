@@ -6,6 +6,7 @@
 #define INTERREFLECT_GBUFFER_KERNEL
 #endif
 
+#include "visibility/camera_lanes-inl.h"
 #include "visibility/interpolate_kernel-inl.h"
 #include "visibility/texture_kernel-inl.h"
 
@@ -35,12 +36,7 @@ HWY_INLINE void fill_rays(const CameraRays& rays, int x0, int y0, RayPacket& pac
     for (int k = 0; k < packet; k += static_cast<int>(hn::Lanes(d))) {
         const Vector x = hn::Add(hn::Load(d, column + k), hn::Set(d, static_cast<float>(x0) + 0.5f));
         const Vector y = hn::Add(hn::Load(d, row + k), hn::Set(d, static_cast<float>(y0) + 0.5f));
-        const auto along = [&](float corner, float right, float down) HWY_ATTR {
-            return hn::Add(hn::Add(hn::Set(d, corner), hn::Mul(hn::Set(d, right), x)), hn::Mul(hn::Set(d, down), y));
-        };
-        const Vec3 direction{along(rays.corner.x, rays.right_step.x, rays.down_step.x),
-                             along(rays.corner.y, rays.right_step.y, rays.down_step.y),
-                             along(rays.corner.z, rays.right_step.z, rays.down_step.z)};
+        const Vec3 direction = towards_places(rays, x, y);
         const Vector length = hn::Sqrt(dot(direction, direction));
         const Vec3 unit = scaled(direction, hn::Div(hn::Set(d, 1.0f), length));
         hn::Store(length, d, s.direction_length + k);
