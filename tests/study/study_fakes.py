@@ -7,6 +7,7 @@ import hashlib
 import os
 import signal
 import time
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -173,6 +174,16 @@ def take_time():
             file.write(f"{begin} {time.monotonic()}\n")
 
 
+def meet():
+    """Until another render waits here too, 20 s at most: RuntimeError where none comes."""
+    folder, end = Path(os.environ["STUDY_FAKES_MEETING"]), time.monotonic() + 20
+    (folder / str(os.getpid())).touch()
+    while len(list(folder.iterdir())) < 2:
+        if time.monotonic() > end:
+            raise RuntimeError("nobody came")
+        time.sleep(0.01)
+
+
 DEEDS = {
     "crashes": lambda: os.kill(os.getpid(), signal.SIGSEGV),
     "is killed": lambda: os.kill(os.getpid(), signal.SIGKILL),
@@ -181,5 +192,6 @@ DEEDS = {
     "eats memory": eat_memory,
     "eats memory briefly": eat_memory_briefly,
     "takes its time": take_time,
+    "meets another": meet,
     "prints": lambda: print("a word from a method"),
 }

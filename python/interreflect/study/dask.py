@@ -33,7 +33,7 @@ class _Dispatch:
         self.client, self.plan = client, plan
         self.timed = plan.study.repeats > 0
         self.scenes: dict[str, Any] = {}  # hash -> future of the pickled scene
-        self.under_way: dict[Any, tuple[int, str]] = {}  # task -> cell, host
+        self.under_way: dict[Any, tuple[int, str, str]] = {}  # task -> cell, address of the process, host
         self.tries: collections.Counter[int] = collections.Counter()
 
     def run(self) -> None:
@@ -48,8 +48,8 @@ class _Dispatch:
                 self.client.cancel([*self.under_way, *self.scenes.values()])
 
     def _fill(self, cells: Any, progress: Any) -> bool:
-        """Give every free host a cell; False where none is left."""
-        while host := self._free_host():
+        """Give every process with room a cell; False where none is left."""
+        while address := self._free_process():
             index = next(cells, -1)
             if index is None:
                 progress.set_postfix_str("waiting for cells of another run")
@@ -57,37 +57,36 @@ class _Dispatch:
             if index < 0:
                 return False
             progress.set_postfix_str(self.plan.title(index))
-            self._submit(index, host)
+            self._submit(index, address)
         return True
 
-    def _free_host(self) -> str:
-        """A host with room for one more cell; "" where there is none."""
-        busy = collections.Counter(host for _, host in self.under_way.values())
-        threads: collections.Counter[str] = collections.Counter()
-        for worker in self._workers().values():
-            threads[worker["host"]] += worker["nthreads"]
-        return next((host for host, count in threads.items() if busy[host] < (1 if self.timed else count)), "")
+    def _free_process(self) -> str:
+        """Address of a process of the cluster with room for one more cell; "" where there is none."""
+        busy = collections.Counter(address for _, address, _ in self.under_way.values())
+        taken = {host for _, _, host in self.under_way.values()} if self.timed else set()
+        free = (at for at, worker in self._workers().items() if worker["host"] not in taken and busy[at] < worker["nthreads"])
+        return next(free, "")
 
     def _workers(self) -> dict[str, dict[str, Any]]:
         return dict(self.client.scheduler_info(n_workers=-1)["workers"])
 
-    def _submit(self, index: int, host: str) -> None:
+    def _submit(self, index: int, address: str) -> None:
+        """Where the process ends, another may take the cell; by itself the scheduler would heap cells where the scene lies."""
         scene = self.plan.cells[index].scene.hash
         if scene not in self.scenes:
             for past in self.scenes.values():
                 past.release()
             self.scenes = {scene: self.client.scatter(self.plan.scene_of(index)(), hash=False)}
-        there = [address for address, worker in self._workers().items() if worker["host"] == host]
         task = self.client.submit(
             measure_there,
             self.plan.request(index),
             self.scenes[scene],
             self.plan.limits,
             pure=False,
-            workers=there,
+            workers=[address],
             allow_other_workers=True,
         )
-        self.under_way[task] = (index, host)
+        self.under_way[task] = (index, address, self._workers().get(address, {}).get("host", ""))
 
     def _collect(self) -> None:
         """Keep what is done; waits a little where nothing is."""
@@ -95,10 +94,10 @@ class _Dispatch:
         if not done:
             time.sleep(GLANCE)
         for task in done:
-            index, host = self.under_way.pop(task)
+            index, address, _ = self.under_way.pop(task)
             if task.status in LOST and (self.tries.update([index]) or self.tries[index] < TRIES):
                 self.scenes.pop(self.plan.cells[index].scene.hash, None)
-                self._submit(index, host)
+                self._submit(index, address)
             else:
                 self.plan.keep(index, _reply(task))
 
