@@ -79,10 +79,11 @@ def test_what_a_method_prints_reaches_standard_error(tmp_path, capfd):
 @pytest.mark.usefixtures("fake_truth")
 def test_a_worker_that_cannot_start_stops_the_study_with_its_reason(tmp_path, monkeypatch):
     workers._end_resting()
-    (tmp_path / "interreflect").mkdir()
-    (tmp_path / "interreflect" / "__init__.py").touch()  # in the place of one that is installed
-    monkeypatch.setattr("interreflect.study.workers.PACKAGES", str(tmp_path))
-    with pytest.raises(RuntimeError, match="No module named"):
+    broken = tmp_path / "python"
+    broken.write_text("#!/bin/sh\necho No module named interreflect >&2\nexit 1\n")
+    broken.chmod(0o755)
+    monkeypatch.setattr(sys, "executable", str(broken))
+    with pytest.raises(RuntimeError, match="exit code 1: No module named"):
         run(study_of("ok"), tmp_path / "r")
 
 
