@@ -104,14 +104,24 @@ std::vector<Ray> random_rays(int count) {
     return rays;
 }
 
+/// Any hits in every lane of a packet, the other lanes being idle.
+std::vector<std::uint8_t> blocked_in_lanes(const Intersector& intersector, const std::vector<Ray>& rays) {
+    std::vector<std::uint8_t> blocked(rays.size());
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        RayPacket packet;
+        packet.set(static_cast<int>(i % RayPacket::width), rays[i]);
+        blocked[i] = intersector.occluded(packet, 1U << (i % RayPacket::width)) != 0;
+    }
+    return blocked;
+}
+
 TEST(Intersector, PacketsAndStreamsFindWhatSingleRaysFind) {
     const World w = mixed_world();
     const std::vector<Ray> rays = random_rays(4099);
     std::vector<Hit> coherent(rays.size()), incoherent(rays.size());
-    std::vector<std::uint8_t> blocked(rays.size()), streamed(rays.size());
+    std::vector<std::uint8_t> streamed(rays.size()), blocked = blocked_in_lanes(*w.intersector, rays);
     w.intersector->nearest_coherent(rays, coherent);
     w.intersector->nearest_incoherent(rays, incoherent);
-    w.intersector->occluded_coherent(rays, blocked);
     w.intersector->occluded_incoherent(rays, streamed);
     int hits = 0;
     for (std::size_t i = 0; i < rays.size(); ++i) {

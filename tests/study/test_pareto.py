@@ -1,5 +1,6 @@
 """Rankings of records whose times and errors are given."""
 
+import dataclasses
 import math
 from pathlib import Path
 
@@ -158,11 +159,13 @@ def test_the_truths_noise_is_subtracted_and_reported():
 
 
 def test_intervals_on_both_axes_come_from_seeds_and_repeats():
-    seeds = [record(t, e, knobs={}, seed=s) for s, (t, e) in enumerate([(1, 0.1), (2, 0.2), (9, 0.6)])]
+    seeds = [record(t, e, knobs={}, seed=s, times=(t, t)) for s, (t, e) in enumerate([(1, 0.1), (2, 0.2), (9, 0.6)])]
     (row,) = configurations(records(*seeds)).to_dict("records")
     reach = 4.302652729696142 * np.std([0.1, 0.2, 0.6], ddof=1) / math.sqrt(3)  # Student's t, two degrees of freedom, 97.5 %
     assert (row["relmse_low"], row["relmse_high"]) == pytest.approx((0.3 - reach, 0.3 + reach))
-    assert (row["milliseconds_low"], row["milliseconds_high"]) == (1, 9)
+    assert (row["milliseconds_low"], row["milliseconds_high"]) == (1, 9)  # six times: smallest and largest hold the median in 97 %
+    (row,) = configurations(records(*(dataclasses.replace(seed, times=()) for seed in seeds))).to_dict("records")
+    assert math.isnan(row["milliseconds_low"])  # three times say less than 95 %
 
 
 def test_a_gain_within_the_intervals_is_not_ranked():

@@ -15,7 +15,8 @@ from study_fakes import frame
 import interreflect.study.contention as contention_module
 import interreflect.study.timing as timing
 from interreflect.study.contention import TOLERATED_SHARE, Contention, Watch
-from interreflect.study.timing import measure, median_interval, settled, summary
+from interreflect.study.timing import measure, settled, summary
+from interreflect.study.uncertainty import median_interval
 
 LIGHT = np.zeros((2, 2, 3), np.float32)
 

@@ -348,16 +348,6 @@ void Intersector::nearest_coherent(std::span<const Ray> rays, std::span<Hit> hit
     }
 }
 
-void Intersector::occluded_coherent(std::span<const Ray> rays, std::span<std::uint8_t> blocked) const {
-    RayPacket packet;
-    for (std::size_t begin = 0; begin < rays.size(); begin += RayPacket::width) {
-        const int count = static_cast<int>(std::min<std::size_t>(RayPacket::width, rays.size() - begin));
-        for (int i = 0; i < count; ++i) packet.set(i, rays[begin + i]);
-        const std::uint32_t lanes = occluded(packet, (1U << count) - 1U);
-        for (int i = 0; i < count; ++i) blocked[begin + i] = static_cast<std::uint8_t>((lanes >> i) & 1U);
-    }
-}
-
 // Incoherent nearest hits cost the same ray by ray, in packets and in streams (PEERS.md); any-hit gains from streams of 256.
 void Intersector::nearest_incoherent(std::span<const Ray> rays, std::span<Hit> hits) const {
     for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = nearest(rays[i]);

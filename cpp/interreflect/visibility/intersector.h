@@ -69,7 +69,6 @@ class Intersector {
     std::uint32_t occluded(RayPacket& packet, std::uint32_t active) const;
     /// Coherent rays (neighbouring pixels): packets as wide as the machine's vectors.
     void nearest_coherent(std::span<const Ray> rays, std::span<Hit> hits) const;
-    void occluded_coherent(std::span<const Ray> rays, std::span<std::uint8_t> blocked) const;
     /// Incoherent rays: whatever call is fastest for them.
     void nearest_incoherent(std::span<const Ray> rays, std::span<Hit> hits) const;
     void occluded_incoherent(std::span<const Ray> rays, std::span<std::uint8_t> blocked) const;

@@ -9,6 +9,7 @@ import numpy as np
 
 from interreflect import _core
 from interreflect.frame import Image
+from interreflect.methods.constant_ambient import ambient_light
 from interreflect.methods.knobs import knob, stage
 from interreflect.methods.method import Method, method
 from interreflect.methods.prepared import View
@@ -48,10 +49,8 @@ class AmbientOcclusion(Method):
             environment = note(sky(self.sky, view.scene, gbuffer, view.seed))
         with profile.stage("shade"):
             reflected = lit.radiance + environment.radiance
-            seen = np.isfinite(gbuffer.depth)
-            mean = reflected[seen].mean(0) if seen.any() else np.zeros(3, np.float32)
             direct = gbuffer.emission + reflected
-            indirect = gbuffer.albedo * (self.ambient * mean).astype(np.float32) * (is_open * seen)[..., None]
+            indirect = ambient_light(gbuffer, reflected, self.ambient) * is_open[..., None]
         return direct, indirect
 
 

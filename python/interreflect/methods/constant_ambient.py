@@ -38,8 +38,13 @@ class ConstantAmbient(Method):
             open_sky = note(sky(self.sky, view.scene, gbuffer, view.seed))
         with profile.stage("shade"):
             reflected = lit.radiance + open_sky.radiance
-            seen = np.isfinite(gbuffer.depth)
-            mean = reflected[seen].mean(0) if seen.any() else np.zeros(3, np.float32)
-            direct = gbuffer.emission + reflected
-            indirect = gbuffer.albedo * (self.ambient * mean).astype(np.float32) * seen[..., None]
+            direct, indirect = gbuffer.emission + reflected, ambient_light(gbuffer, reflected, self.ambient)
         return direct, indirect
+
+
+def ambient_light(gbuffer: _core.GBuffer, reflected: Image, multiple: float) -> Image:
+    """What surfaces reflect of light that arrives from everywhere with a multiple of the mean radiance `reflected` of all that is seen."""
+    seen = np.isfinite(gbuffer.depth)
+    mean = reflected[seen].mean(0) if seen.any() else np.zeros(3, np.float32)
+    light: Image = gbuffer.albedo * (multiple * mean).astype(np.float32) * seen[..., None]
+    return light

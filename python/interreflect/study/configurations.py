@@ -53,7 +53,7 @@ def configurations(records: Records) -> pd.DataFrame:
     added: dict[str, Any] = {"seeds": grouped.size()}
     for name in WITH_INTERVALS:
         added |= _interval(name, [mean_interval(group.to_numpy(float)) for _, group in grouped[name]])
-    times = [median_interval(np.concatenate([_times(record) for record in group])) for _, group in grouped["record"]]
+    times = [median_interval(np.concatenate([record.every_time for record in group])) for _, group in grouped["record"]]
     added |= _interval("milliseconds", times)
     found = found.drop(columns=list(added), errors="ignore")  # a record's own interval gives way to that of all its seeds
     return pd.concat([found, pd.DataFrame(added, index=found.index)], axis=1).reset_index()
@@ -67,13 +67,8 @@ def _with_sums(table: pd.DataFrame) -> pd.DataFrame:
         if len(parts) == 3 and parts[2] != "milliseconds":
             sums.setdefault("bytes" if parts[2] == "bytes" else WORK + parts[2], []).append(".".join(parts))
     added = {name: table[columns].astype(float).sum(axis=1) for name, columns in sums.items()}
-    memory = [float(getattr(record, "peak_memory_bytes", np.nan) or np.nan) for record in table["record"]]
+    memory = [record.peak_memory_bytes for record in table["record"]]
     return table.assign(**({"bytes": np.nan} | added), peak_memory_bytes=memory)
-
-
-def _times(record: object) -> list[float]:
-    """Every repeat's milliseconds where the record holds them, else their median."""
-    return list(getattr(record, "times", ()) or (record.milliseconds,))  # type: ignore[attr-defined]
 
 
 def _interval(name: str, intervals: list[tuple[float, float]]) -> dict[str, list[float]]:

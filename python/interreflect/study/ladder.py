@@ -246,8 +246,5 @@ class _Climb:
 
 
 def _times(group: Sequence[Record]) -> list[float]:
-    """Every repeat's milliseconds where the records hold them, else each seed's median."""
-    repeats: list[float] = []
-    for record in group:
-        repeats += list(getattr(record, "times", ()) or (record.milliseconds,))
-    return repeats
+    """Every repeat's milliseconds, of all seeds."""
+    return [milliseconds for record in group for milliseconds in record.every_time]

@@ -94,6 +94,11 @@ class Record:
         """The method and its knobs in one line."""
         return f"{self.method}({', '.join(f'{name}={value}' for name, value in self.knobs.items())})"
 
+    @property
+    def every_time(self) -> tuple[float, ...]:
+        """Every repeat's milliseconds; their median alone in a record that was made without them."""
+        return self.times or (self.milliseconds,)
+
     def row(self, calibration: Calibration | None = None) -> dict[str, Any]:
         """The record as a row of the table. calibration: of its machine."""
         fixed = {name: getattr(self, name) for name in FIXED if hasattr(self, name)}

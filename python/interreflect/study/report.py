@@ -56,7 +56,7 @@ def _summary(records: Records) -> str:
     if records.missing:
         lines.append(f"{records.missing} cells are not measured yet.")
     warnings = [f"Damaged and left out: {text}" for text in records.damaged]
-    contended = sum(bool(getattr(record, "contended", False)) for record in records)
+    contended = sum(record.contended for record in records)
     if contended:
         warnings.append(f"{contended} cells were timed while other work ran on the machine.")
     warnings += dict.fromkeys(f"{record.scene}, {record.method}: {text}" for record in records for text in record.warnings)

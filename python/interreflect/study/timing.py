@@ -12,9 +12,9 @@ import numpy as np
 from interreflect.study.contention import Watch
 from interreflect.study.interface import Frame, Profile
 from interreflect.study.memory import without_collection
+from interreflect.study.uncertainty import median_interval
 
 WITHIN = 0.02  # of the median: how near both ends of its interval must be
-OUTSIDE = 0.05  # chance that the interval misses the median of all times
 
 
 @dataclasses.dataclass(frozen=True)
@@ -33,18 +33,6 @@ class Timing:
     others_share: float
     contended: bool
     stages: dict[str, dict[str, Any]]  # name -> milliseconds, bytes, counts
-
-
-def median_interval(times: Sequence[float]) -> tuple[float, float]:
-    """The 95 % interval of the median, whatever the distribution: the k-th smallest and k-th largest of n independent times.
-
-    It misses the median with the chance 2 P(B < k), B binomial of n and 1/2 [Conover 1999, 3.2]; (NaN, NaN) for n < 6, where even
-    the smallest and the largest do.
-    """
-    ordered, n, k, below = sorted(times), len(times), 0, 0.0
-    while 2 * (below := below + math.comb(n, k) / 2**n) <= OUTSIDE:
-        k += 1
-    return (ordered[k - 1], ordered[n - k]) if k else (math.nan, math.nan)
 
 
 def settled(times: Sequence[float]) -> bool:

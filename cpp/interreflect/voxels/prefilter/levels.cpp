@@ -122,21 +122,15 @@ Pyramid build_isotropic(Coverage coverage, const LitVoxels& lit) {
     const VoxelView voxels = view(lit, pyramid.scale);
     const bool surface = coverage == Coverage::surface;
     const LevelView finest = view(pyramid.levels[0]);
-    // The second level is reduced from slices that are still in the core's cache.
     const int pairs = (finest.nz + 1) / 2;
     parallel_pieces(static_cast<std::size_t>(pairs), [&](std::size_t piece) {
         const int z = static_cast<int>(piece);
         HWY_DYNAMIC_DISPATCH(write_slices)(finest, slices_of(voxels, pyramid.domain, z), z);
         if (pyramid.levels.size() > 1) HWY_DYNAMIC_DISPATCH(reduce_slice)(finest, view(pyramid.levels[1]), z, surface);
     });
-    for (std::size_t i = 1; i < pyramid.levels.size(); ++i) {
-        const LevelView coarse = view(pyramid.levels[i]);
-        if (i > 1) {
-            const LevelView fine = view(pyramid.levels[i - 1]);
-            over_slices(pyramid.levels[i], [&](int z) { HWY_DYNAMIC_DISPATCH(reduce_slice)(fine, coarse, z, surface); });
-        }
-        fill_border(pyramid.levels[i]);
-    }
+    reduce_coarse(pyramid, [&](const LevelView& fine, const LevelView& coarse, int z) {
+        HWY_DYNAMIC_DISPATCH(reduce_slice)(fine, coarse, z, surface);
+    });
     pyramid.counts.voxels = lit.grid->size();
     return pyramid;
 }
@@ -155,14 +149,9 @@ Pyramid build_anisotropic(const LitVoxels& lit) {
         std::vector<std::uint32_t> number(per_pair, 0);
         HWY_DYNAMIC_DISPATCH(first_faces_slice)(finest, view(pyramid.levels[1]), inside, z, number.data());
     });
-    for (std::size_t i = 1; i < pyramid.levels.size(); ++i) {
-        const LevelView coarse = view(pyramid.levels[i]);
-        if (i > 1) {
-            const LevelView fine = view(pyramid.levels[i - 1]);
-            over_slices(pyramid.levels[i], [&](int z) { HWY_DYNAMIC_DISPATCH(reduce_slice_faces)(fine, coarse, z); });
-        }
-        fill_border(pyramid.levels[i]);
-    }
+    reduce_coarse(pyramid, [&](const LevelView& fine, const LevelView& coarse, int z) {
+        HWY_DYNAMIC_DISPATCH(reduce_slice_faces)(fine, coarse, z);
+    });
     pyramid.counts.voxels = lit.grid->size();
     return pyramid;
 }

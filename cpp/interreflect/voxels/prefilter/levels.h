@@ -51,6 +51,19 @@ void over_slices(const Pyramid::Level& level, const Body& body) {
     });
 }
 
+/// Levels from the third on, each from the one below it by `reduce(fine, coarse, slice)`, and the borders of all but the finest:
+/// the second level is made beside the finest, whose slices are then still in the core's cache.
+template <class Reduce>
+void reduce_coarse(Pyramid& pyramid, const Reduce& reduce) {
+    for (std::size_t i = 1; i < pyramid.levels.size(); ++i) {
+        if (i > 1) {
+            const LevelView fine = view(pyramid.levels[i - 1]), coarse = view(pyramid.levels[i]);
+            over_slices(pyramid.levels[i], [&](int z) { reduce(fine, coarse, z); });
+        }
+        fill_border(pyramid.levels[i]);
+    }
+}
+
 /// Every level of one face: the finest one cleared and written from the voxels, each other one reduced from the one below it.
 Pyramid build_isotropic(Coverage coverage, const LitVoxels& lit);
 

@@ -198,14 +198,9 @@ Pyramid build_octants(const LitVoxels& lit) {
         HWY_DYNAMIC_DISPATCH(write_slices_octants)(finest, slices_of(voxels, pyramid.domain, z), z);
         if (pyramid.levels.size() > 1) HWY_DYNAMIC_DISPATCH(reduce_slice_octants)(finest, view(pyramid.levels[1]), z);
     });
-    for (std::size_t i = 1; i < pyramid.levels.size(); ++i) {
-        const LevelView coarse = view(pyramid.levels[i]);
-        if (i > 1) {
-            const LevelView fine = view(pyramid.levels[i - 1]);
-            over_slices(pyramid.levels[i], [&](int z) { HWY_DYNAMIC_DISPATCH(reduce_slice_octants)(fine, coarse, z); });
-        }
-        fill_border(pyramid.levels[i]);
-    }
+    reduce_coarse(pyramid, [&](const LevelView& fine, const LevelView& coarse, int z) {
+        HWY_DYNAMIC_DISPATCH(reduce_slice_octants)(fine, coarse, z);
+    });
     pyramid.counts.voxels = lit.grid->size();
     return pyramid;
 }
