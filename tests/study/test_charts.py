@@ -9,6 +9,7 @@ from charted import measure
 from study_fakes import Fake, Scene
 
 from interreflect import charts, metrics
+from interreflect.charts.style import add_legend, new_figure
 from interreflect.study.configurations import configurations
 from interreflect.study.pareto import pareto
 from interreflect.study.run import run
@@ -145,3 +146,21 @@ def test_a_label_leaves_out_knobs_that_the_techniques_of_a_row_do_not_have(recor
     row = next(record for record in records if record.status == "ok" and record.method == "fake").row()
     assert charts.label(records, row | {"error": float("nan")}) == "fake"
     assert charts.label(records, {name: value for name, value in row.items() if name != "error"}) == "fake"
+
+
+def test_long_words_squeeze_no_panel(records, monkeypatch):
+    monkeypatch.setattr("interreflect.charts.records._knobs", lambda row, names: "many knobs " * 30)
+    figure = charts.speed_accuracy(records)
+    figure.draw_without_rendering()
+    assert all(axes.get_position().width > 0.3 for axes in figure.axes)  # two panels
+
+
+def test_a_legend_of_many_methods_stays_within_a_narrow_figure():
+    figure = new_figure((6.4, 4.8), dark=False)
+    axes = figure.subplots()
+    for name in ("voxel-cone-tracing", "ambient-occlusion", "constant-ambient", "path-tracing", "path-tracing-denoised"):
+        axes.plot([0, 1], label=name)
+    add_legend(figure, [axes], dark=False)
+    figure.draw_without_rendering()
+    box = figure.legends[0].get_window_extent()
+    assert box.x0 >= 0 and box.x1 <= figure.bbox.width

@@ -34,7 +34,8 @@ LABELS = {
     "ssim": "SSIM (better upward)",
 }
 ERROR_RANGE = (1e-4, 1.0)  # relative squared error of a pixel, black to white in error maps
-NAMED_POINTS = 10  # points of a front that get their knobs written beside them
+NAMED_POINTS = 10  # points of a front that get their knobs written beside them,
+NAME_LENGTH = 44  # in so many characters
 
 
 def speed_accuracy(records: Records, x: str = "milliseconds", y: str = "relmse", dark: bool = False) -> Figure:
@@ -256,8 +257,9 @@ def _name_points(ax: Axes, rows: pd.DataFrame, x: str, y: str, told_apart: Mappi
     low, high = ax.get_xlim()
     ax.set_xlim(low, high * (high / low) ** 0.25)  # room for the last one's words
     for _, row in rows.iterrows():
-        text = _knobs(row, told_apart)
-        ax.annotate(text, (row[x], row[y]), xytext=(7, 5), textcoords="offset points", fontsize=6.5, color=theme_of(dark)["ink"])
+        text = textwrap.shorten(_knobs(row, told_apart), NAME_LENGTH, placeholder=" …")
+        note = ax.annotate(text, (row[x], row[y]), xytext=(7, 5), textcoords="offset points", fontsize=6.5, color=theme_of(dark)["ink"])
+        note.set_in_layout(False)  # words may cross the panel's edge; they must not squeeze it
 
 
 def view_title(view: Any) -> str:

@@ -54,6 +54,8 @@ def dress(ax: Axes, dark: bool) -> Axes:
 
 
 def add_legend(figure: Figure, axes: Iterable[Axes], dark: bool, columns: int = 5) -> None:
+    """Below the axes, in at most so many columns, and no more than there is room for."""
+    columns = min(columns, max(1, int(figure.get_figwidth() / 1.9)))  # inches that an entry's words take
     entries = {label: handle for ax in axes for handle, label in zip(*ax.get_legend_handles_labels(), strict=True)}
     legend = figure.legend(
         entries.values(), entries.keys(), loc="outside lower center", ncols=min(len(entries), columns), frameon=False, fontsize=8

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -101,8 +102,9 @@ class Ladder:
         lines = [f"{self.scene.name}, {self.camera}: truth's own noise {self.truth_noise:.1e}"]
         for rung in self.rungs:
             verdict = "needed" if rung.needed else "not needed"
+            gain = "" if math.isnan(rung.gain) else f"gain {rung.gain:+8.4f}"
             lines.append(
-                f"  {rung.mechanism:<20} relMSE {rung.error:8.4f}  {rung.milliseconds:8.1f} ms  gain {rung.gain:+8.4f}  {verdict}"
+                f"  {rung.mechanism:<20} relMSE {rung.error:8.4f}  {rung.milliseconds:8.1f} ms  {gain:<13}  {verdict}"
                 f"{f' ({rung.note})' if rung.note else ''}: {words(rung.method)}"
             )
         return "\n".join([*lines, f"  {self.stopped}"])

@@ -10,7 +10,7 @@ from typing import Any
 from interreflect.methods.knobs import Range
 
 REACH = 4.0  # a knob without given limits is looked at from a quarter of its value to four times it
-TRANSPORT = ("bounces", "milliseconds")  # what a picture is to show, and a budget: no choices of how well it is made
+TRANSPORT = ("bounces", "pixel", "milliseconds")  # what a picture is to show, and a budget: no choices of how well it is made
 
 
 @dataclasses.dataclass(frozen=True)
@@ -48,7 +48,8 @@ class Axis:
 
 
 def axes_of(method: Any, ranges: Mapping[str, Any] | None = None, knobs: Sequence[str] | None = None) -> list[Axis]:
-    """An axis per plain knob of the method and of its techniques, in their order. `bounces` and time budgets are left out.
+    """An axis per plain knob of the method and of its techniques, in their order, but for what a picture is to show (`bounces`, `pixel`)
+    and time budgets.
 
     ranges: path -> (low, high), or a list of choices; other numbers go from a quarter to four times their value, within what the knob
     allows (over all it allows, where the value is 0 or less). knobs: these paths only. TypeError for a path that is no plain knob.
