@@ -1,4 +1,4 @@
-"""The three questions, asked of every method on one view: which stage costs the error, what does the scene need, which knobs matter?
+"""The three questions, asked of every method on one view: which stage costs what, what does the scene need, what may be dropped?
 
     python tools/three_questions.py atrium|cornell_box|FILE [--size 320x180] [--seeds 4] [--trials 16] [--out results/three_questions]
 
@@ -12,6 +12,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pandas as pd
 
 import interreflect as ir
@@ -43,6 +44,17 @@ class Questions:
             found = ir.attribute(method, self.scene, seeds=range(self.seeds), folder=place, **self.common)
             self._keep(f"attribution of {method.name}", str(found), found.table, found.chart())
             found.images().savefig(self.folder / f"attribution of {method.name}, images.png")
+
+    def motion(self) -> None:
+        """The camera goes forward by a quarter of a voxel a frame."""
+        camera = next(iter(self.scene.cameras.values()))
+        forward = np.subtract(camera.target, camera.position)
+        step = tuple(float(share) for share in 0.25 * forward / np.linalg.norm(forward))
+        dolly = ir.Motion.dolly(by=step, frames=8, voxels=128)
+        for method in METHODS:
+            found = ir.stability.motion(method, self.scene, dolly, size=(160, 90), reference=ir.Reference(noise=1e-9, max_spp=512))
+            self._keep(f"motion of {method.name}", str(found), found.table, found.chart())
+            found.filmstrip().savefig(self.folder / f"motion of {method.name}, frames.png")
 
     def ladder(self) -> None:
         found = ir.ladder(self.scene, seeds=range(self.seeds), folder=self.folder / "records of the ladder", **self.common)
@@ -84,10 +96,10 @@ def shown(table: pd.DataFrame, knobs: Sequence[str]) -> str:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("scene", help="a scene file, or the name of a built-in scene")
-    parser.add_argument("--size", default="320x180", help="of attribution, ladder and search; sensitivity uses 80 x 60")
+    parser.add_argument("--size", default="320x180", help="of attribution, ladder and search; motion has 160 x 90, sensitivity 80 x 60")
     parser.add_argument("--seeds", type=int, default=4)
     parser.add_argument("--trials", type=int, default=16, help="settings of each method that the search tries")
-    parser.add_argument("--questions", nargs="+", default=["attribution", "ladder", "sensitivity", "search"])
+    parser.add_argument("--questions", nargs="+", default=["attribution", "motion", "ladder", "sensitivity", "search"])
     parser.add_argument("--out", type=Path, default=Path("results/three_questions"))
     given = parser.parse_args()
     scene = find_scene(given.scene)
