@@ -1,4 +1,4 @@
-// What both surface kernels start with: numbers of a packet's triangles, interpolated. Included once for every vector target.
+// Numbers of a packet's triangles, interpolated lane by lane: for hits that share none. Included once for every vector target.
 #if defined(INTERREFLECT_INTERPOLATE_KERNEL) == defined(HWY_TARGET_TOGGLE)
 #ifdef INTERREFLECT_INTERPOLATE_KERNEL
 #undef INTERREFLECT_INTERPOLATE_KERNEL
@@ -8,22 +8,20 @@
 
 #include <hwy/cache_control.h>
 
-#include "math/lanes-inl.h"
+#include "visibility/packet_lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace interreflect {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-inline constexpr int packet = RayPacket::width;
-using FloatLanes = float[packet];
 // Four values a lane, side by side, as they come from the vertices.
 using Quads = float[packet][4];
 
 /// Position and normal x; normal y, z and texture coordinates. Differences of the second and third corner to the first in the
 /// same order. Largest magnitudes of the corners' coordinates.
 struct Interpolated {
-    alignas(64) Quads position_normal, normal_texcoord, edge1, edge1_texcoord, edge2, edge2_texcoord, largest;
+    alignas(64) Quads position_normal, normal_texcoord, edge1, edge2, largest;
     std::uint32_t material[packet];
 };
 
@@ -75,9 +73,7 @@ HWY_INLINE void interpolate(const GeometryArrays& arrays, const RayPacket& hits,
         hn::Store(hn::Add(hn::Add(hn::Mul(a0, w), hn::Mul(b0, u)), hn::Mul(c0, v)), d, s.position_normal[k]);
         hn::Store(hn::Add(hn::Add(hn::Mul(a1, w), hn::Mul(b1, u)), hn::Mul(c1, v)), d, s.normal_texcoord[k]);
         hn::Store(hn::Sub(b0, a0), d, s.edge1[k]);
-        hn::Store(hn::Sub(b1, a1), d, s.edge1_texcoord[k]);
         hn::Store(hn::Sub(c0, a0), d, s.edge2[k]);
-        hn::Store(hn::Sub(c1, a1), d, s.edge2_texcoord[k]);
         hn::Store(hn::Max(hn::Abs(a0), hn::Max(hn::Abs(b0), hn::Abs(c0))), d, s.largest[k]);
         s.material[k] = arrays.materials[triangle];
     }

@@ -1,6 +1,7 @@
 #include "visibility/surface_kernel.h"
 
 #include <array>
+#include <cstring>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "visibility/surface_kernel.cpp"
