@@ -63,7 +63,7 @@ def records_loading(count: int = 10_000) -> Row:
         copies = [dataclasses.replace(record, key=f"{k:032x}", seed=k) for k in range(count)]
         with mock.patch("os.fsync"):  # ten thousand of them take minutes, and no power is cut here
             for copy in copies:
-                store.write(copy, None, None)
+                store.write(copy)
         store.begin(study.name, [{"key": copy.key, "scene": "many", "camera": "first"} for copy in copies])
         milliseconds = least(timed(lambda: len(ir.load_records(store.folder))), repeats=3)[0]
     return within("10,000 records to load", milliseconds, None, 1000, note="the files are in the system's page cache")

@@ -70,7 +70,7 @@ def test_ten_thousand_records_load_in_a_second(tmp_path, fake_truth, monkeypatch
     store, cells = Store(tmp_path / "r"), []
     for k in range(10_000):
         key = f"{k:032x}"
-        store.write(dataclasses.replace(record, key=key, seed=k), None, None)
+        store.write(dataclasses.replace(record, key=key, seed=k))
         cells.append({"key": key, "scene": "plain", "camera": "front"})
     store.begin("s", cells)
     times = []

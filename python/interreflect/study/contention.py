@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import dataclasses
+import itertools
 import os
 import resource
 import time
 from contextlib import suppress
-from pathlib import Path
+
+from interreflect.study.memory import read
 
 TICK = 1 / os.sysconf("SC_CLK_TCK")  # seconds: the grain of /proc/stat
 BUSY = (1, 2, 3, 6, 7, 8)  # of a line of /proc/stat: user, nice, system, irq, softirq, steal (another machine's share of a virtual one)
@@ -49,15 +51,16 @@ def _reading() -> tuple[float, float, float, float]:
 
 
 def _busy_seconds() -> float:
-    ours = {f"cpu{number}" for number in os.sched_getaffinity(0)}
-    lines = [fields for line in Path("/proc/stat").read_text().splitlines() if (fields := line.split())[0] in ours]
-    return TICK * sum(int(fields[index]) for fields in lines for index in BUSY)
+    ours = {b"cpu%d" % number for number in os.sched_getaffinity(0)}
+    lines = itertools.takewhile(lambda line: line.startswith(b"cpu"), read("/proc/stat").splitlines())
+    processors = [fields for line in lines if (fields := line.split())[0] in ours]
+    return TICK * sum(int(fields[index]) for fields in processors for index in BUSY)
 
 
 def _waited_seconds() -> float:
     """0 where the kernel does not count it (/proc/<pid>/schedstat)."""
     waited = 0
-    for thread in Path("/proc/self/task").iterdir():
+    for thread in os.listdir("/proc/self/task"):
         with suppress(OSError, IndexError):  # a thread that has ended meanwhile
-            waited += int((thread / "schedstat").read_text().split()[1])
+            waited += int(read(f"/proc/self/task/{thread}/schedstat").split()[1])
     return waited * 1e-9

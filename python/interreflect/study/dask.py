@@ -7,13 +7,14 @@ import dataclasses
 import time
 from typing import Any
 
-from interreflect.study.messages import Reply, Request
+from interreflect.study.messages import Phase, Pictures, Reply, Request
 from interreflect.study.plan import Plan
 from interreflect.study.records import FAILED
 from interreflect.study.workers import Crew, Limits
 
 LOST = ("cancelled", "lost")  # states of a task whose scene went away with the process that held it
 GLANCE = 0.01  # seconds between looks at the tasks
+Answer = tuple[Reply, list[Pictures]]
 TRIES = 3  # with the scene sent anew, before a cell counts as failed
 
 
@@ -99,26 +100,30 @@ class _Dispatch:
                 self.scenes.pop(self.plan.cells[index].scene.hash, None)
                 self._submit(index, address)
             else:
-                self.plan.keep(index, _reply(task))
+                reply, pictures = _answer(task)
+                for kept in pictures:
+                    self.plan.keep_pictures(index, kept)
+                self.plan.keep(index, reply)
 
 
-def measure_there(request: Request, scene: bytes, limits: Limits) -> Reply:
+def measure_there(request: Request, scene: bytes, limits: Limits) -> Answer:
     """The task: measure a cell on this host, and say what host it is."""
     from interreflect.machine import about
 
+    told: list[Phase | Pictures] = []
     with Crew() as crew:
-        reply = crew.measure(request, lambda: scene, limits, lambda phase: None)
+        reply = crew.measure(request, lambda: scene, limits, told.append)
     here = {"machine": about().asdict(), "threads": request.threads or about().threads}
-    return dataclasses.replace(reply, changes=here | reply.changes)
+    return dataclasses.replace(reply, changes=here | reply.changes), [message for message in told if isinstance(message, Pictures)][-1:]
 
 
-def _reply(task: Any) -> Reply:
+def _answer(task: Any) -> Answer:
     """What the task answered. The cell's failure where the cluster gave it up; RuntimeError where its host cannot measure at all."""
     if task.status == "finished":
         return task.result()  # type: ignore[no-any-return]
     error = task.exception() if task.status == "error" else None
     if error is None or isinstance(error, _distributed().KilledWorker):
-        return Reply({"status": FAILED, "failure": f"the cluster gave the cell up: {error or task.status}"})
+        return Reply({"status": FAILED, "failure": f"the cluster gave the cell up: {error or task.status}"}), []
     raise RuntimeError(f"a host of the cluster cannot measure: {error}") from error
 
 

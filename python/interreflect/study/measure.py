@@ -18,9 +18,9 @@ from interreflect.study.calibration import Calibration, calibrate
 from interreflect.study.interface import Frame, Method, Prepared, Scene
 from interreflect.study.locks import Claims, machine
 from interreflect.study.memory import give_back, peak_bytes, reset_peak, resident_bytes
-from interreflect.study.messages import Phase, Reply, Request
+from interreflect.study.messages import Phase, Pictures, Reply, Request
 from interreflect.study.records import FAILED, NOT_FINITE, OK
-from interreflect.study.reference import Truth, reference, reference_key
+from interreflect.study.reference import Truth, reference
 from interreflect.study.sources import package_digest
 from interreflect.study.timing import measure
 
@@ -45,7 +45,7 @@ ON_INDIRECT: dict[str, Metric] = {
 class Bench:
     """Measures cells one by one; keeps the scene, the truths and the preparation at hand, and nothing of earlier scenes."""
 
-    def __init__(self, say: Callable[[Phase], None], await_go: Callable[[], object]) -> None:
+    def __init__(self, say: Callable[[Phase | Pictures], None], await_go: Callable[[], object]) -> None:
         self._say, self._await_go = say, await_go
         self._scene: tuple[str, Scene] | None = None
         self._truths: dict[str, Truth] = {}
@@ -79,15 +79,14 @@ class Bench:
                     changes["calibration"] = calibration.key
                 frame = self._render(scene, request, changes)
             with self._turn("metrics", alone=False):
+                if request.images:
+                    self._say(_pictures(frame, truth, request.truth_wanted))
                 changes |= compare(frame, truth)
         except KeyboardInterrupt:
             return Reply({}, interrupted=True)
         except Exception as error:
-            return Reply(changes | {"status": FAILED, "failure": _words(error), "images": False}, calibration=calibration)
-        if not request.images:
-            return Reply(changes, calibration=calibration)
-        wanted = (truth.image, truth.indirect) if request.truth_wanted else None
-        return Reply(changes, (np.asarray(frame.image), np.asarray(frame.indirect)), wanted, calibration)
+            return Reply(changes | {"status": FAILED, "failure": _words(error), "images": False}, calibration)
+        return Reply(changes, calibration)
 
     def _calibrate(self, threads: int | None) -> Calibration:
         """Once a run, or rather once a quarter of an hour and number of threads."""
@@ -111,13 +110,12 @@ class Bench:
 
     def _truth(self, scene: Scene, request: Request) -> Truth:
         wanted = request.reference
-        key = reference_key(scene, request.camera, request.size, request.bounces, wanted, 0)
-        if key not in self._truths:
-            with self._first_in_line(key), self._turn("truth", alone=False):
-                self._truths[key] = reference(
+        if request.truth not in self._truths:
+            with self._first_in_line(request.truth), self._turn("truth", alone=False):
+                self._truths[request.truth] = reference(
                     scene, request.camera, request.size, request.bounces, wanted.noise, wanted.max_spp, threads=request.threads
                 )
-        return self._truths[key]
+        return self._truths[request.truth]
 
     @contextmanager
     def _first_in_line(self, truth: str) -> Iterator[None]:
@@ -154,7 +152,6 @@ class Bench:
     def _before_clock(self) -> None:
         self._say(Phase("go"))
         self._await_go()
-        self._say(Phase("render"))
 
     def _prepare(self, scene: Scene, request: Request) -> tuple[Prepared, float]:
         """The method's preparation, kept for the next camera or seed, and the peak of memory while it was made."""
@@ -185,6 +182,11 @@ def compare(frame: Frame, truth: Truth) -> Changes:
             values[name] = math.nan
             reasons.append(f"{name}: {error}")
     return {"status": OK, "metrics": values, "warnings": tuple(reasons)}
+
+
+def _pictures(frame: Frame, truth: Truth, truth_wanted: bool) -> Pictures:
+    of_truth = (truth.key, (truth.image, truth.indirect)) if truth_wanted else None
+    return Pictures((np.asarray(frame.image), np.asarray(frame.indirect)), of_truth)
 
 
 def _load_libraries() -> None:

@@ -1,4 +1,4 @@
-"""What a study and its worker processes say to each other: pickles with their length before them, through pipes."""
+"""What a study and its worker processes say to each other: pickles and their arrays through pipes, with their lengths before them."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class Ready:
 
 @dataclasses.dataclass(frozen=True)
 class Request:
-    """One cell to measure. Answered by phases, as they begin, and then by a Reply."""
+    """One cell to measure. Answered by phases, as they begin, its pictures where they are kept, and then by a Reply."""
 
     scene_hash: str
     camera: str
@@ -47,6 +47,7 @@ class Request:
     repeats: int
     max_repeats: int
     images: bool
+    truth: str  # its key
     truth_wanted: bool  # its pictures too, as the folder lacks them
     code: str  # digest of the parent's package: another one must not measure
     scene: bytes | None = None  # pickled; None: the worker holds it
@@ -55,9 +56,17 @@ class Request:
 
 @dataclasses.dataclass(frozen=True)
 class Phase:
-    """What the worker begins to do ("truth", "calibrate", "prepare", "render", "metrics"), or awaits: its "turn", the parent's "go"."""
+    """What the worker begins to do ("truth", "calibrate", "prepare", "render", "metrics"), or awaits: its "turn", the parent's "go" before it renders on."""
 
     name: str
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Pictures:
+    """Image and indirect light of a cell, and those of its truth under its key where they are wanted; on their way before the metrics."""
+
+    cell: Pair
+    truth: tuple[str, Pair] | None = None
 
 
 @dataclasses.dataclass(frozen=True)
@@ -65,33 +74,32 @@ class Go:
     """The parent does nothing that disturbs a clock: the worker may start it."""
 
 
-@dataclasses.dataclass(frozen=True, eq=False)
+@dataclasses.dataclass(frozen=True)
 class Reply:
-    """changes: fields of the cell's record. pictures, truth: image and indirect light, where the folder keeps them.
-
-    calibration: of the machine that timed the cell.
-    """
+    """changes: fields of the cell's record. calibration: of the machine that timed the cell."""
 
     changes: dict[str, Any]
-    pictures: Pair | None = None
-    truth: Pair | None = None
     calibration: Calibration | None = None
     interrupted: bool = False
     refused: str = ""  # why nothing can be measured there at all
 
 
 def send(stream: IO[bytes], message: object) -> None:
-    """Write a message whole. BrokenPipeError where nobody reads any more."""
-    data = pickle.dumps(message, 5)
-    stream.write(LENGTH.pack(len(data)))
-    stream.write(data)
+    """Write a message whole, arrays as they lie in memory. BrokenPipeError where nobody reads any more."""
+    arrays: list[pickle.PickleBuffer] = []
+    parts = [memoryview(pickle.dumps(message, 5, buffer_callback=arrays.append)), *(array.raw() for array in arrays)]
+    stream.write(b"".join(LENGTH.pack(number) for number in (len(parts), *(part.nbytes for part in parts))))
+    for part in parts:
+        stream.write(part)
     stream.flush()
 
 
 def receive(stream: IO[bytes]) -> Any:
     """The next message. EOFError where the other side is gone."""
-    (length,) = LENGTH.unpack(_exactly(stream, LENGTH.size))
-    return pickle.loads(_exactly(stream, length))
+    (count,) = LENGTH.unpack(_exactly(stream, LENGTH.size))
+    lengths = LENGTH.iter_unpack(_exactly(stream, count * LENGTH.size))
+    data, *arrays = [_exactly(stream, length) for (length,) in lengths]
+    return pickle.loads(data, buffers=arrays)
 
 
 def _exactly(stream: IO[bytes], count: int) -> bytearray:

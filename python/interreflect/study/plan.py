@@ -18,7 +18,7 @@ from interreflect.progress import bar
 from interreflect.study.files import canonical
 from interreflect.study.interface import Method, Scene
 from interreflect.study.locks import Claims
-from interreflect.study.messages import Reply, Request
+from interreflect.study.messages import Pictures, Reply, Request
 from interreflect.study.records import Record
 from interreflect.study.reference import reference_key
 from interreflect.study.sources import PACKAGE, package_digest, source_digest
@@ -40,6 +40,7 @@ class Plan:
         self.settled = 0  # cells whose records are there
         self._labels = scene_labels(study)
         self._machine = about().asdict()
+        self._truths: dict[tuple[str, str, int | None], str] = {}  # scene, camera, bounces -> key
         self._method: tuple[Method | None, bytes] = (None, b"")  # the last one asked for, pickled
 
     def __enter__(self) -> Plan:
@@ -49,7 +50,7 @@ class Plan:
         with ExitStack() as stack:
             self._claims = Claims(self.store.folder)
             stack.callback(self._claims.close)
-            self.writer = stack.enter_context(Writer(self.store))
+            self.writer = stack.enter_context(Writer())
             self._stack = stack.pop_all()
         return self
 
@@ -79,7 +80,7 @@ class Plan:
     def request(self, index: int) -> Request:
         """What a worker is asked; without the scene."""
         cell, study = self.cells[index], self.study
-        truth = reference_key(cell.scene, cell.camera, study.size, cell.bounces, study.reference, 0)
+        truth = self._truth_key(cell)
         return Request(
             scene_hash=cell.scene.hash,
             camera=cell.camera,
@@ -92,6 +93,7 @@ class Plan:
             repeats=study.repeats,
             max_repeats=study.max_repeats,
             images=study.images,
+            truth=truth,
             truth_wanted=study.images and not self.store.has_truth(truth),
             code=package_digest(),
         )
@@ -104,19 +106,32 @@ class Plan:
         cell = self.cells[index]
         return f"{self._labels[cell.scene.hash]}, {cell.method.name}"
 
+    def keep_pictures(self, index: int, pictures: Pictures) -> None:
+        """Write the cell's pictures."""
+        self.writer.do(self.store.write_pictures, self.keys[index], pictures)
+
     def keep(self, index: int, reply: Reply) -> None:
-        """Write the cell's record and pictures. KeyboardInterrupt where the worker met one, RuntimeError where it cannot measure."""
+        """Write the cell's record. KeyboardInterrupt where the worker met one, RuntimeError where it cannot measure."""
         if reply.interrupted:
             raise KeyboardInterrupt
         if reply.refused:
             raise RuntimeError(reply.refused)
         if reply.calibration is not None:
-            self.writer.calibration(reply.calibration)
-        described = self._describe(self.cells[index], self.keys[index])
-        warnings = (*described.warnings, *reply.changes.get("warnings", ()))
-        record = dataclasses.replace(described, **{**reply.changes, "warnings": warnings})
-        self.writer.write(record, reply.pictures, reply.truth, then=functools.partial(self._claims.leave, record.key))
+            self.writer.do(self.store.write_calibration, reply.calibration)
+        self.writer.do(self._write, index, reply.changes)
         self.settled += 1
+
+    def _write(self, index: int, changes: dict[str, Any]) -> None:
+        described = self._describe(self.cells[index], self.keys[index])
+        warnings = (*described.warnings, *changes.get("warnings", ()))
+        self.store.write(dataclasses.replace(described, **{**changes, "warnings": warnings}))
+        self._claims.leave(described.key)
+
+    def _truth_key(self, cell: Cell) -> str:
+        view = (cell.scene.hash, cell.camera, cell.bounces)
+        if view not in self._truths:
+            self._truths[view] = reference_key(cell.scene, cell.camera, self.study.size, cell.bounces, self.study.reference, 0)
+        return self._truths[view]
 
     def _pickled(self, method: Method) -> bytes:
         if self._method[0] is not method:

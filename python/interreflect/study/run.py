@@ -9,6 +9,7 @@ from typing import Any
 
 from interreflect.scenes.checks import number
 from interreflect.study.dask import check_client, measure_on
+from interreflect.study.messages import Phase, Pictures
 from interreflect.study.plan import Plan
 from interreflect.study.records import Records
 from interreflect.study.store import load_records
@@ -50,13 +51,15 @@ def _measure_here(plan: Plan) -> None:
                 progress.set_postfix_str("waiting for cells of another run")
                 time.sleep(PATIENCE)
                 continue
-            follow = functools.partial(_follow, plan, progress, plan.title(index))
+            follow = functools.partial(_follow, plan, progress, index)
             plan.keep(index, crew.measure(plan.request(index), plan.scene_of(index), plan.limits, follow))
         progress.update(plan.settled - progress.n)
 
 
-def _follow(plan: Plan, progress: Any, title: str, phase: str) -> None:
-    if phase == GO:
+def _follow(plan: Plan, progress: Any, index: int, message: Phase | Pictures) -> None:
+    if isinstance(message, Pictures):
+        plan.keep_pictures(index, message)
+    elif message.name == GO:
         plan.writer.settle()
     else:
-        progress.set_postfix_str(f"{title}, {phase}")
+        progress.set_postfix_str(f"{plan.title(index)}, {message.name}")

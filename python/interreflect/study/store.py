@@ -22,7 +22,7 @@ import numpy as np
 from interreflect.study.calibration import Calibration
 from interreflect.study.files import DamagedFile, read_checked, remove_parts, replacing, set_aside, write_checked
 from interreflect.study.memory import without_collection
-from interreflect.study.messages import Pair
+from interreflect.study.messages import Pair, Pictures
 from interreflect.study.records import Record, Records
 
 FORMAT = 2
@@ -55,12 +55,16 @@ class Store:
             return None
         return record
 
-    def write(self, record: Record, pictures: Pair | None, truth: Pair | None) -> None:
-        """Keep a cell. The pictures go first: the record says that they are there."""
-        if pictures is not None:
-            _save_pair(self._image(record.key), pictures)
-        if truth is not None:
-            _save_pair(self._truth(record.truth), truth)
+    def write_pictures(self, key: str, pictures: Pictures) -> None:
+        """Keep a cell's pictures. They go before its record, which says that they are there."""
+        _save_pair(self._image(key), pictures.cell)
+        if pictures.truth is not None:
+            _save_pair(self._truth(pictures.truth[0]), pictures.truth[1])
+
+    def write(self, record: Record) -> None:
+        """Keep a cell's record; pictures that it does not speak of go."""
+        if not record.images:
+            self._image(record.key).unlink(missing_ok=True)
         write_checked(self._cell(record.key), record.as_content(), FORMAT)
 
     def has_truth(self, key: str) -> bool:

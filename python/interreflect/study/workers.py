@@ -24,13 +24,15 @@ from typing import Any
 
 from interreflect.study.calibration import Calibration
 from interreflect.study.memory import resident_bytes
-from interreflect.study.messages import Go, Ready, Reply, Request, Surroundings, receive, send
+from interreflect.study.messages import Go, Phase, Pictures, Ready, Reply, Request, Surroundings, receive, send
 from interreflect.study.records import FAILED
 
 PACKAGES = str(Path(__file__).resolve().parents[2])  # the folder that holds the package
 GLANCE = 0.01  # seconds between looks at a worker's memory: at 5 GB/s of fresh pages, 50 MB too much
+PIPE_BYTES = 2**20  # pictures of 43,000 pixels go without waiting for their reader; the most that Linux permits everybody
 GO = "go"  # the phase that waits for the parent
 THE_CELLS = ("prepare", "render")  # phases that count for its limits
+Show = Callable[[Phase | Pictures], None]
 FROM_OUTSIDE = {signal.SIGKILL, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT, signal.SIGINT}  # signals that no method's fault sends
 
 
@@ -67,7 +69,10 @@ class Worker:
         assert self._process.stdin is not None and self._process.stdout is not None
         self._requests = io.BufferedWriter(self._process.stdin)
         self._replies = self._process.stdout  # without a buffer, where a message could lie that poll does not see
-        send(self._requests, _surroundings())
+        with suppress(OSError):  # the system may permit less
+            fcntl.fcntl(self._replies, fcntl.F_SETPIPE_SZ, PIPE_BYTES)
+        with suppress(BrokenPipeError):  # it ended at once; `wait_until_ready` says why
+            send(self._requests, _surroundings())
 
     def wait_until_ready(self) -> None:
         """RuntimeError where it does not start."""
@@ -88,7 +93,7 @@ class Worker:
             return False
         return ready.fresh
 
-    def measure(self, request: Request, limits: Limits, show: Callable[[str], None]) -> Reply:
+    def measure(self, request: Request, limits: Limits, show: Show) -> Reply:
         """The reply to a request. Lost where the process ended, or was ended because it passed a limit."""
         self.wait_until_ready()
         try:
@@ -117,7 +122,7 @@ class Worker:
             self._said.truncate(0)
         return text.decode(errors="replace")
 
-    def _reply(self, limits: Limits, show: Callable[[str], None]) -> Reply:
+    def _reply(self, limits: Limits, show: Show) -> Reply:
         answer = select.poll()
         answer.register(self._replies.fileno(), select.POLLIN)
         left, phase, before = limits.timeout, "", time.monotonic()
@@ -136,10 +141,12 @@ class Worker:
                 message = receive(self._replies)
                 if isinstance(message, Reply):
                     return message
-                phase = message.name
-                show(phase)
+                show(message)
+                if isinstance(message, Phase):
+                    phase = message.name
                 if phase == GO:
                     send(self._requests, Go())
+                    phase = "render"
 
     def _ended(self) -> Lost:
         """Why the process ended."""
@@ -181,11 +188,11 @@ class Crew:
         else:  # it may be in the middle of a cell
             self._worker.close()
 
-    def measure(self, request: Request, scene: Callable[[], bytes], limits: Limits, show: Callable[[str], None]) -> Reply:
+    def measure(self, request: Request, scene: Callable[[], bytes], limits: Limits, show: Show) -> Reply:
         """Measure a cell. What takes the worker along becomes the record's failure; ended from outside, the cell is tried once more.
 
-        scene: pickles the request's scene, called where the worker does not hold it. show: told of every phase; the clock starts
-        after it has returned from "go".
+        scene: pickles the request's scene, called where the worker does not hold it. show: told of every phase, and given the
+        pictures; the clock starts after it has returned from "go".
         """
         for again in (True, False):
             try:
@@ -196,7 +203,7 @@ class Crew:
                     return Reply({"status": FAILED, "failure": str(lost), "limits": lost.limits})
         raise AssertionError
 
-    def _try(self, request: Request, scene: Callable[[], bytes], limits: Limits, show: Callable[[str], None]) -> Reply:
+    def _try(self, request: Request, scene: Callable[[], bytes], limits: Limits, show: Show) -> Reply:
         self._worker = self._worker or Worker()
         given = None if self._worker.scene == request.scene_hash else scene()
         request = dataclasses.replace(request, scene=given, calibration=self._calibration)

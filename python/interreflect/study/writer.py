@@ -5,20 +5,16 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor, wait
-
-from interreflect.study.calibration import Calibration
-from interreflect.study.messages import Pair
-from interreflect.study.records import Record
-from interreflect.study.store import Store
+from typing import Any
 
 
 class Writer:
-    """One thread that writes the cells it is given, in order. Leaving the block waits for all of them."""
+    """One thread that does what it is given, in order, up to the first failure. Leaving the block waits for all of it."""
 
-    def __init__(self, store: Store) -> None:
-        self._store = store
+    def __init__(self) -> None:
         self._thread = ThreadPoolExecutor(1)
         self._pending: deque[Future[None]] = deque()
+        self._failed = False
 
     def __enter__(self) -> Writer:
         return self
@@ -28,22 +24,23 @@ class Writer:
         if failure is None:
             self._raise_failures()
 
-    def write(self, record: Record, pictures: Pair | None, truth: Pair | None, then: Callable[[], None]) -> None:
-        """A cell, and then `then()`. OSError where an earlier one could not be written."""
+    def do(self, work: Callable[..., object], *given: Any) -> None:
+        """Call `work(*given)` when its turn comes. OSError where something before could not be written."""
         self._raise_failures()
-
-        def write() -> None:
-            self._store.write(record, pictures, truth)
-            then()
-
-        self._pending.append(self._thread.submit(write))
-
-    def calibration(self, calibration: Calibration) -> None:
-        self._pending.append(self._thread.submit(self._store.write_calibration, calibration))
+        self._pending.append(self._thread.submit(self._next, work, given))
 
     def settle(self) -> None:
         """Return once nothing is being written any more."""
         wait(self._pending)
+
+    def _next(self, work: Callable[..., object], given: tuple[Any, ...]) -> None:
+        if self._failed:  # a record may rest on the pictures before it
+            return
+        try:
+            work(*given)
+        except BaseException:
+            self._failed = True
+            raise
 
     def _raise_failures(self) -> None:
         while self._pending and self._pending[0].done():
