@@ -8,7 +8,7 @@
 #include "voxels/march/cone_environment.h"
 #include "voxels/march/cone_set.h"
 #include "voxels/march/gather.h"
-#include "voxels/march/march_cones.h"
+#include "voxels/march/receivers.h"
 
 namespace interreflect {
 namespace {
@@ -37,43 +37,16 @@ struct Work {
     bool own_surface;
 };
 
-constexpr int capacity = ConeBatch::capacity;
-
-/// The pixels of one phase in one tile, ready to send any cone: what depends on its direction is linear in it.
-struct Receivers {
-    enum { dx, dy, dz, slope, axis_direction, rows };
-    int count = 0;
-    int pixel[capacity];
-    float per_axis[rows][3][capacity];  // of each row, by tangent, bitangent and normal
-    float sum[7][capacity];             // radiance, openness, sky
-};
-
-void add_receiver(const Work& work, int pixel, Receivers& to, ConeBatch& batch) {
-    const GBuffer& g = work.gbuffer;
-    const int i = to.count++;
-    to.pixel[i] = pixel;
-    const vec3 facing = g.geometric_normal[pixel];
-    const Frame frame(g.normal[pixel]);
-    const vec3 axes[3] = {frame.tangent, frame.bitangent, frame.normal};
-    for (int a = 0; a < 3; ++a) {
-        for (int k = 0; k < 3; ++k) to.per_axis[Receivers::dx + k][a][i] = axes[a][k];
-        to.per_axis[Receivers::slope][a][i] = glm::dot(axes[a], facing);
-        to.per_axis[Receivers::axis_direction][a][i] = axes[a][longest_axis(facing)];
-    }
-    for (auto& row : to.sum) row[i] = 0.0f;
-    const Domain& domain = work.pyramid.domain;
-    set_start(batch, i, domain, domain.to_voxels(g.position[pixel]), facing, work.normal_offset, work.own_surface);
-}
-
 void find_receivers(const Work& work, const Tile& tile, int phase, Receivers& found, ConeBatch& batch) {
     found.count = 0;
     // Tiles begin on a block's border.
     for (int y = tile.y0 + phase / work.block.width; y < tile.y1; y += work.block.height)
         for (int x = tile.x0 + phase % work.block.width; x < tile.x1; x += work.block.width) {
             const int pixel = y * work.gbuffer.width + x;
-            if (work.gbuffer.hit(pixel)) add_receiver(work, pixel, found, batch);
+            const GBuffer& g = work.gbuffer;
+            if (g.hit(pixel)) found.add(pixel, g.position[pixel], g.geometric_normal[pixel], g.normal[pixel]);
         }
-    batch.count = found.count;
+    start_receivers(work.pyramid.domain, work.normal_offset, work.own_surface, found, batch);
 }
 
 void turn_cones(const Receivers& from, const vec3& cone, ConeBatch& batch) {
