@@ -2,6 +2,7 @@
 
 import dataclasses
 import math
+import time
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +11,7 @@ import pytest
 from interreflect.study.configurations import configurations
 from interreflect.study.pareto import best, cheapest, equal_error, equal_time, hypervolume, inefficiency, knee, pareto
 from interreflect.study.records import Record, Records
+from interreflect.study.uncertainty import mean_interval
 
 # moocore's own example of a front, in (milliseconds, relmse); (16, .25) and (20, .5) are dominated
 POINTS = [(2, 0.5), (5, 0.2), (16, 0.1), (20, 0.05), (16, 0.25), (20, 0.5)]
@@ -222,3 +224,26 @@ def test_no_records_make_empty_rankings():
     ):
         assert table.empty
         assert "note" in table.columns
+
+
+def test_intervals_are_those_of_each_configuration_whatever_its_number_of_seeds():
+    errors = {1.0: [0.5], 2.0: [0.3, 0.2, 0.4], 3.0: [0.1, 0.2], 4.0: list(np.linspace(0.1, 0.4, 12)), 5.0: [0.25, 0.35, 0.3]}
+    order = np.random.default_rng(4).permutation([(time, k) for time, given in errors.items() for k in range(len(given))])
+    given = [record(time, errors[time][int(k)], seed=int(k), knobs={"time": time}) for time, k in order]
+    for _, row in configurations(records(*given)).iterrows():
+        seeds = [item.metrics["relmse"] for item in given if item.milliseconds == row["milliseconds"]]
+        assert row["seeds"] == len(seeds)
+        assert (row["relmse_low"], row["relmse_high"]) == pytest.approx(mean_interval(seeds), rel=1e-12, nan_ok=True)
+
+
+def test_ten_thousand_records_are_ranked_in_half_a_second():
+    """Processor time, which other programs do not lengthen as they do the clock's."""
+    errors = [(1 + 0.1 * (k % 2)) / (1 + k // 2) for k in range(10_000)]
+    many = records(*(record(1 + k // 2, error, seed=k % 2, knobs={"time": k // 2}) for k, error in enumerate(errors)))
+    assert len(many.table) == 10_000
+    spent = []
+    for _ in range(3):
+        start = time.process_time()
+        assert len(pareto(many)) == 5_000
+        spent.append(time.process_time() - start)
+    assert min(spent) < 0.5

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import numpy.typing as npt
 
 from interreflect.study.records import METRICS, OK, Records
-from interreflect.study.uncertainty import mean_interval, median_interval
+from interreflect.study.uncertainty import Interval, mean_intervals, median_interval
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -51,10 +53,12 @@ def configurations(records: Records) -> pd.DataFrame:
     grouped = kept.astype(dict.fromkeys(measured, float)).groupby(by, sort=False)
     found = grouped.agg(how)
     added: dict[str, Any] = {"seeds": grouped.size()}
-    for name in WITH_INTERVALS:
-        added |= _interval(name, [mean_interval(group.to_numpy(float)) for _, group in grouped[name]])
-    times = [median_interval(np.concatenate([record.every_time for record in group])) for _, group in grouped["record"]]
-    added |= _interval("milliseconds", times)
+    for name, intervals in zip(WITH_INTERVALS, _mean_intervals(kept[list(WITH_INTERVALS)], grouped.ngroup()), strict=True):
+        added |= _interval(name, intervals)
+    times: list[list[float]] = [[] for _ in range(len(found))]
+    for index, record in zip(grouped.ngroup(), kept["record"], strict=True):
+        times[index] += record.every_time
+    added |= _interval("milliseconds", [median_interval(group) for group in times])
     found = found.drop(columns=list(added), errors="ignore")  # a record's own interval gives way to that of all its seeds
     return pd.concat([found, pd.DataFrame(added, index=found.index)], axis=1).reset_index()
 
@@ -71,7 +75,20 @@ def _with_sums(table: pd.DataFrame) -> pd.DataFrame:
     return table.assign(**({"bytes": np.nan} | added), peak_memory_bytes=memory)
 
 
-def _interval(name: str, intervals: list[tuple[float, float]]) -> dict[str, list[float]]:
+def _mean_intervals(values: pd.DataFrame, group: pd.Series[int]) -> npt.NDArray[np.float64]:
+    """Of each column's mean over each group, (columns, groups, 2); groups of one size together."""
+    order = np.argsort(group.to_numpy(), kind="stable")
+    columns, sizes = values.to_numpy(float)[order].T, np.bincount(group)
+    starts = np.cumsum(sizes) - sizes
+    intervals = np.empty((len(columns), len(sizes), 2))
+    for size in np.unique(sizes):
+        alike = np.flatnonzero(sizes == size)
+        rows = columns[:, starts[alike][:, None] + np.arange(size)]
+        intervals[:, alike] = mean_intervals(rows.reshape(-1, size)).reshape(len(columns), len(alike), 2)
+    return intervals
+
+
+def _interval(name: str, intervals: Sequence[Interval] | npt.NDArray[np.float64]) -> dict[str, list[float]]:
     return {f"{name}_low": [low for low, _ in intervals], f"{name}_high": [high for _, high in intervals]}
 
 

@@ -56,7 +56,8 @@ class Request:
 
 @dataclasses.dataclass(frozen=True)
 class Phase:
-    """What the worker begins to do ("truth", "calibrate", "prepare", "render", "metrics"), or awaits: its "turn", the parent's "go" before it renders on."""
+    """What the worker begins to do ("truth", "calibrate", "prepare", "render", "metrics"), or awaits: its "turn", the parent's "go"
+    before it renders on."""
 
     name: str
 

@@ -149,7 +149,7 @@ class Records(Sequence[Record]):
     @cached_property
     def knob_columns(self) -> list[str]:
         """The table's columns that are knobs."""
-        return list(dict.fromkeys(knob_column(name) for record in self.records for name in record.knobs))
+        return [knob_column(name) for name in dict.fromkeys(name for record in self.records for name in record.knobs)]
 
     def has_images(self, record: Record) -> bool:
         """Are the pictures of this record and of its truth there?"""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from functools import cache
 from typing import Any
 
@@ -13,10 +13,10 @@ import numpy.typing as npt
 CONFIDENCE = 0.95
 RESAMPLES = 2000
 FEWEST_TO_RESAMPLE = 10  # a bootstrap of fewer values covers well below 95 %: three values resample to ten different means
+CHUNK = 256  # rows whose resamples are at hand at a time: 4 MiB
 SEED = 20130321  # of the resampling, so that one table always shows the same intervals
 
 Interval = tuple[float, float]
-Statistic = Callable[..., npt.NDArray[np.float64]]  # of an array, along an axis
 
 
 def mean_interval(values: Sequence[float] | npt.NDArray[Any]) -> Interval:
@@ -24,16 +24,45 @@ def mean_interval(values: Sequence[float] | npt.NDArray[Any]) -> Interval:
 
     One value tells nothing about its own spread: (nan, nan).
     """
-    given = np.asarray(values, np.float64)
-    if given.size < 2 or not np.isfinite(given).all():
-        return np.nan, np.nan
-    if given.size >= FEWEST_TO_RESAMPLE:
-        return _percentiles(resampled(given, np.mean), given.size)
-    from scipy.stats import t
+    low, high = mean_intervals(np.asarray(values, np.float64)[None])[0]
+    return float(low), float(high)
 
-    middle, error = float(given.mean()), float(given.std(ddof=1)) / np.sqrt(given.size)
-    reach = float(t.ppf((1 + CONFIDENCE) / 2, given.size - 1)) * error
-    return middle - reach, middle + reach
+
+def mean_intervals(rows: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    """`mean_interval` of every row, (rows, values) -> (rows, 2)."""
+    count = rows.shape[1]
+    intervals = np.full((len(rows), 2), np.nan)
+    if count >= 2:
+        known = np.isfinite(rows).all(axis=1)
+        intervals[known] = _by_bootstrap(rows[known]) if count >= FEWEST_TO_RESAMPLE else _by_t(rows[known])
+    return intervals
+
+
+def _by_t(rows: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    count = rows.shape[1]
+    reach = _t_quantile((1 + CONFIDENCE) / 2, count - 1) * rows.std(axis=1, ddof=1) / np.sqrt(count)
+    return np.stack([rows.mean(axis=1) - reach, rows.mean(axis=1) + reach], axis=1)
+
+
+def _by_bootstrap(rows: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    """The percentile interval of the mean, its levels widened for few values [Hesterberg 2015, section 5.3]."""
+    from scipy.special import ndtr
+
+    count = rows.shape[1]
+    tail = float(ndtr(np.sqrt(count / (count - 1)) * _t_quantile((1 - CONFIDENCE) / 2, count - 1)))
+    drawn = np.random.default_rng(SEED).integers(0, count, (RESAMPLES, count))
+    places = drawn + count * np.arange(RESAMPLES)[:, None]
+    often = np.bincount(places.ravel(), minlength=places.size).reshape(places.shape) / count  # of each value in each resample, over all
+    chunks = [rows[start : start + CHUNK] for start in range(0, len(rows), CHUNK)]
+    ends = [np.quantile(np.einsum("rv,sv->rs", chunk, often), [tail, 1 - tail], axis=1).T for chunk in chunks]
+    return np.concatenate([np.empty((0, 2)), *ends])
+
+
+@cache
+def _t_quantile(level: float, freedom: int) -> float:
+    from scipy.special import stdtrit
+
+    return float(stdtrit(freedom, level))
 
 
 def median_interval(values: Sequence[float] | npt.NDArray[Any]) -> Interval:
@@ -56,18 +85,3 @@ def _outer_rank(count: int) -> int:
     while count and 2 * (below := below + math.comb(count, k) / 2**count) <= 1 - CONFIDENCE:
         k += 1
     return k
-
-
-def resampled(values: npt.NDArray[np.float64], statistic: Statistic) -> npt.NDArray[np.float64]:
-    """A statistic of RESAMPLES draws with replacement, along the first axis of the values."""
-    drawn = np.random.default_rng(SEED).integers(0, len(values), (RESAMPLES, len(values)))
-    return np.asarray(statistic(values[drawn], axis=1))
-
-
-def _percentiles(statistics: npt.NDArray[np.float64], count: int) -> Interval:
-    """The percentile interval, its levels widened for few values [Hesterberg 2015, section 5.3]."""
-    from scipy.stats import norm, t
-
-    tail = float(norm.cdf(np.sqrt(count / (count - 1)) * t.ppf((1 - CONFIDENCE) / 2, count - 1)))
-    low, high = np.quantile(statistics, [tail, 1 - tail])
-    return float(low), float(high)
