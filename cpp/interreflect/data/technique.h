@@ -62,21 +62,34 @@ struct Param {
         : name(n), member(m), doc(d), unit(u), range(r) {}
 };
 
-template <class Technique, class... Value>
+/// Each is a Param of the technique, or of a struct that it derives from.
+template <class... Params>
 struct Description {
     std::string_view name, doc;
     Source source;
-    std::tuple<Param<Technique, Value>...> params;
+    std::tuple<Params...> params;
 };
 
-template <class Technique, class... Value>
-constexpr Description<Technique, Value...> describe(std::string_view name, std::string_view doc, Source source,
-                                                    Param<Technique, Value>... params) {
-    return {name, doc, source, std::tuple<Param<Technique, Value>...>(params...)};
+namespace detail {
+template <class Technique, class Value>
+constexpr std::tuple<Param<Technique, Value>> listed(const Param<Technique, Value>& param) {
+    return {param};
 }
-template <class Technique>
-constexpr Description<Technique> describe(std::string_view name, std::string_view doc, Source source) {
-    return {name, doc, source, {}};
+template <class... Params>
+constexpr std::tuple<Params...> listed(const std::tuple<Params...>& shared) {
+    return shared;
+}
+template <class... Params>
+constexpr Description<Params...> described(std::string_view name, std::string_view doc, Source source,
+                                           std::tuple<Params...> params) {
+    return {name, doc, source, params};
+}
+}  // namespace detail
+
+/// From a technique's params, and tuples of those that it shares with others.
+template <class... Params>
+constexpr auto describe(std::string_view name, std::string_view doc, Source source, const Params&... params) {
+    return detail::described(name, doc, source, std::tuple_cat(detail::listed(params)...));
 }
 
 template <class T>

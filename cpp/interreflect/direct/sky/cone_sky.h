@@ -13,7 +13,7 @@ namespace interreflect {
 struct ConeSky {
     bool operator==(const ConeSky&) const = default;
     static constexpr auto description =
-        describe<ConeSky>("ConeSky", "What the march's cones leave open of the environment.", Source{"Rehfeld et al. 2014"});
+        describe("ConeSky", "What the march's cones leave open of the environment.", Source{"Rehfeld et al. 2014"});
 };
 /// `irradiance`: of the environment, a pixel each; `glossy`: radiance of the environment that the lobe reflects, or empty.
 DirectLight sky(const ConeSky& technique, const GBuffer& gbuffer, std::span<const vec3> irradiance, std::span<const vec3> glossy);

@@ -11,7 +11,7 @@ namespace interreflect {
 struct EveryPixel {
     bool operator==(const EveryPixel&) const = default;
     static constexpr auto description =
-        describe<EveryPixel>("EveryPixel", "Every pixel does all of its work itself.", Source{"Interreflect"});
+        describe("EveryPixel", "Every pixel does all of its work itself.", Source{"Interreflect"});
 };
 
 inline Buffer<vec4> merge(const EveryPixel&, const GBuffer&, std::span<const float>, Buffer<vec4> partial) { return partial; }

@@ -110,10 +110,8 @@ Work prepare(const GlossyCone& technique, const Pyramid& pyramid, const GBuffer&
     for (const auto& material : scene.materials)
         if (material.glossy()) work.tables[static_cast<int>(material.lobe)] = &lobe_table(material.lobe);
     for (int width = 0; width < widths; ++width)
-        work.schedules.push_back(make_schedule(
-            {static_cast<float>(width) * degrees_a_width * degrees_to_radians, static_cast<float>(technique.first_diameter),
-             static_cast<float>(technique.step), static_cast<float>(technique.level_bias), static_cast<float>(technique.density)},
-            pyramid));
+        work.schedules.push_back(
+            make_schedule(technique.shape(static_cast<float>(width) * degrees_a_width * degrees_to_radians), pyramid));
     for (int i = 0; i <= 4; ++i) work.environments.emplace_back(scene, static_cast<float>(i) * 15.0f * degrees_to_radians);
     return work;
 }

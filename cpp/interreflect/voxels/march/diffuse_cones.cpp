@@ -90,12 +90,10 @@ Counts march_phase(const Work& work, int phase, Receivers& receivers, ConeBatch&
 GatheredLight march(const DiffuseCones& technique, const Pyramid& pyramid, const GBuffer& gbuffer, const Scene& scene,
                     const Intersector&, const Share& share, std::uint32_t) {
     const ConeSet set = choose_set(technique);
-    const ConeShape shape{set.half_angle, static_cast<float>(technique.first_diameter), static_cast<float>(technique.step),
-                          static_cast<float>(technique.level_bias), static_cast<float>(technique.density)};
     const Work work{pyramid,
                     gbuffer,
                     set,
-                    make_schedule(shape, pyramid),
+                    make_schedule(technique.shape(set.half_angle), pyramid),
                     AirMap(pyramid),
                     ConeEnvironment(scene, set.half_angle),
                     block_of(share),

@@ -9,8 +9,8 @@ namespace interreflect {
 struct Anisotropic {
     bool operator==(const Anisotropic&) const = default;
     static constexpr auto description =
-        describe<Anisotropic>("Anisotropic", "Six faces, each composited front to back along its direction, then averaged.",
-                              Source{"Crassin et al. 2011", "anisotropic voxels"});
+        describe("Anisotropic", "Six faces, each composited front to back along its direction, then averaged.",
+                 Source{"Crassin et al. 2011", "anisotropic voxels"});
 };
 
 Pyramid prefilter(const Anisotropic& technique, const LitVoxels& lit);

@@ -10,9 +10,9 @@ namespace interreflect {
 /// SurfaceCoverage.
 struct OctantCoverage {
     bool operator==(const OctantCoverage&) const = default;
-    static constexpr auto description = describe<OctantCoverage>(
-        "OctantCoverage", "Surface coverage, with the colour that is seen along each of eight directions.",
-        Source{"Rehfeld et al. 2014, 3.1; Crassin et al. 2011", "anisotropic voxels"});
+    static constexpr auto description =
+        describe("OctantCoverage", "Surface coverage, with the colour that is seen along each of eight directions.",
+                 Source{"Rehfeld et al. 2014, 3.1; Crassin et al. 2011", "anisotropic voxels"});
 };
 
 Pyramid prefilter(const OctantCoverage& technique, const LitVoxels& lit);

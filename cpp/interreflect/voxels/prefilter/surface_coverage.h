@@ -7,7 +7,7 @@ namespace interreflect {
 /// A quarter of the sum, clamped [Rehfeld et al. 2014, 3.1]: a wall one voxel thick stays opaque at every level.
 struct SurfaceCoverage {
     bool operator==(const SurfaceCoverage&) const = default;
-    static constexpr auto description = describe<SurfaceCoverage>(
+    static constexpr auto description = describe(
         "SurfaceCoverage", "Opacity is a quarter of the sum of the eight below it, clamped; radiance keeps their mean colour.",
         Source{"Rehfeld et al. 2014", "3.1"});
 };

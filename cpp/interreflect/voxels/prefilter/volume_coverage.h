@@ -8,7 +8,7 @@ namespace interreflect {
 struct VolumeCoverage {
     bool operator==(const VolumeCoverage&) const = default;
     static constexpr auto description =
-        describe<VolumeCoverage>("VolumeCoverage", "A texel is the mean of the eight below it.", Source{"Freed 2018", "4.4"});
+        describe("VolumeCoverage", "A texel is the mean of the eight below it.", Source{"Freed 2018", "4.4"});
 };
 
 Pyramid prefilter(const VolumeCoverage& technique, const LitVoxels& lit);
