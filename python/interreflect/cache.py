@@ -1,6 +1,7 @@
-"""The user's cache folder: scenes, references and precomputations, each a file that may vanish at any time.
+"""The user's cache folder: scenes, references and precomputations, each a file that may vanish at any time; studies of the tools.
 
     <folder>/<kind>/<name>        the folder is INTERREFLECT_CACHE, or the platform's folder for caches of users
+    <folder>/studies/<name>/      what `attribute`, `ladder` and the like measured, which goes as a whole, but not while it runs
 
 Files appear whole or not at all; the least recently used go first once all of them together pass MAX_BYTES.
 """
@@ -8,6 +9,7 @@ Files appear whole or not at all; the least recently used go first once all of t
 from __future__ import annotations
 
 import os
+import shutil
 import warnings
 from collections.abc import Callable
 from contextlib import suppress
@@ -16,18 +18,20 @@ from pathlib import Path
 from typing import IO
 
 from interreflect.study.files import DAMAGED, PART, remove_parts, replacing
+from interreflect.study.locks import in_use
 
 MAX_BYTES = 8 * 2**30
 
 
 @dataclass(frozen=True)
 class Entry:
-    """A cached file: `used` is the time of its last use, seconds since 1970."""
+    """A cached file, or a study's folder of so many: `used` is the time of its last use, seconds since 1970."""
 
     kind: str
     path: Path
     bytes: int
     used: float
+    files: int = 1
 
     @property
     def key(self) -> str:
@@ -47,20 +51,34 @@ def folder(kind: str | None = None) -> Path:
 
 
 def entries() -> list[Entry]:
-    """Every cached file, damaged ones that were set aside among them, the least recently used first."""
+    """Every cached file and study, damaged files that were set aside among them, the least recently used first."""
     found = []
     for path in folder().glob("*/*") if folder().is_dir() else ():
-        with suppress(FileNotFoundError):  # another process may have removed it since
-            status = path.stat()
-            if path.is_file() and not path.name.endswith(PART):
-                found.append(Entry(path.parent.name, path, status.st_size, status.st_mtime))
+        if path.is_dir():
+            found.append(_together(path))
+        elif not path.name.endswith(PART):
+            found += [Entry(path.parent.name, path, bytes_, used) for bytes_, used in _status(path)]
     return sorted(found, key=lambda entry: (entry.used, entry.path))
 
 
+def _together(study: Path) -> Entry:
+    """A folder as one entry, last used when any of its files was."""
+    files = [status for path in study.rglob("*") if not path.is_dir() for status in _status(path)]
+    return Entry(study.parent.name, study, sum(size for size, _ in files), max((used for _, used in files), default=0.0), len(files))
+
+
+def _status(path: Path) -> list[tuple[int, float]]:
+    """Bytes and time of last use; nothing of a file that another process has removed since."""
+    with suppress(FileNotFoundError):
+        status = path.stat()
+        return [(status.st_size, status.st_mtime)]
+    return []
+
+
 def clear(kind: str | None = None) -> int:
-    """Removes every file, or every one of a kind; how many they were."""
+    """Removes every file, or every one of a kind, but no study that runs; how many they were."""
     remove_parts(folder())
-    return _remove([entry for entry in entries() if kind in (None, entry.kind)])
+    return _remove([entry for entry in entries() if kind in (None, entry.kind) and not in_use(entry.path)])
 
 
 def trim(limit: int = MAX_BYTES, keep: Path | None = None) -> int:
@@ -68,7 +86,7 @@ def trim(limit: int = MAX_BYTES, keep: Path | None = None) -> int:
     found = entries()
     total, victims = sum(entry.bytes for entry in found), []
     for entry in sorted(found, key=lambda entry: not entry.path.name.endswith(DAMAGED)):
-        if total > limit and entry.path != keep:
+        if total > limit and entry.path != keep and not in_use(entry.path):
             victims.append(entry)
             total -= entry.bytes
     return _remove(victims)
@@ -76,8 +94,11 @@ def trim(limit: int = MAX_BYTES, keep: Path | None = None) -> int:
 
 def _remove(victims: list[Entry]) -> int:
     for entry in victims:
-        entry.path.unlink(missing_ok=True)
-    return len(victims)
+        if entry.path.is_dir():
+            shutil.rmtree(entry.path, ignore_errors=True)
+        else:
+            entry.path.unlink(missing_ok=True)
+    return sum(entry.files for entry in victims)
 
 
 def touch(path: Path) -> None:

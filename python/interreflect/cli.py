@@ -143,7 +143,8 @@ def cache_list() -> None:
     entries = cache.entries()
     rows = [[entry.kind, entry.path.name, f"{entry.bytes / 2**20:.1f}"] for entry in entries]
     _print_rows(f"cache in {cache.folder()}", ["kind", "file", "MiB"], rows)
-    print(f"{len(entries)} files, {sum(entry.bytes for entry in entries) / 2**20:.1f} of at most {cache.MAX_BYTES / 2**20:.0f} MiB")
+    files, size = sum(entry.files for entry in entries), sum(entry.bytes for entry in entries)
+    print(f"{files} files, {size / 2**20:.1f} of at most {cache.MAX_BYTES / 2**20:.0f} MiB")
 
 
 @cache_app.command("clear")

@@ -1,5 +1,6 @@
 """Studies with fake methods, whose rows are known: every cell is there, failures are rows, nothing is measured twice."""
 
+import dataclasses
 import json
 import math
 from pathlib import Path
@@ -12,7 +13,7 @@ from study_fakes import Camera, Fake, Scene, lasting
 from interreflect.study.files import HOST
 from interreflect.study.reference import Reference
 from interreflect.study.run import run
-from interreflect.study.store import load_records
+from interreflect.study.store import Store, load_records
 from interreflect.study.study import Study, sweep
 
 pytestmark = pytest.mark.usefixtures("fake_truth")
@@ -291,3 +292,13 @@ def test_half_written_files_of_dead_processes_are_cleared(tmp_path):
         part.write_text("half")
     run(small(), tmp_path / "r")
     assert (stale.exists(), elsewhere.exists()) == (False, True)
+
+
+def test_a_records_stages_come_back_in_the_order_in_which_they_ran(tmp_path):
+    record = run(small(images=False), tmp_path / "r")[0]
+    ran = {name: {"milliseconds": 1.0, "bytes": 0, "counts": {}} for name in ("voxelize", "gbuffer", "shade", "march", "a")}
+    store = Store(tmp_path / "r")
+    store.write(dataclasses.replace(record, stages=ran))
+    again, loaded = store.read(record.key), load_records(tmp_path / "r")
+    columns = [name.split(".")[1] for name in loaded.table if name.startswith("stage.") and name.endswith(".milliseconds")]
+    assert list(again.stages) == list(loaded[0].stages) == columns == list(ran)

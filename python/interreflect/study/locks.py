@@ -46,6 +46,20 @@ class Claims:
         fcntl.fcntl(self._file, command, LOCK.pack(kind, os.SEEK_SET, place, 1, 0))
 
 
+def in_use(folder: Path) -> bool:
+    """Does a run measure into this folder now?"""
+    try:
+        file = os.open(folder / "claims", os.O_RDONLY | os.O_CLOEXEC)
+    except OSError:
+        return False
+    try:
+        all_of_it = LOCK.pack(fcntl.F_WRLCK, os.SEEK_SET, 0, 0, 0)
+        kind, *_ = LOCK.unpack(fcntl.fcntl(file, fcntl.F_OFD_GETLK, all_of_it))
+    finally:
+        os.close(file)
+    return bool(kind != fcntl.F_UNLCK)
+
+
 @contextmanager
 def machine(alone: bool, waiting: Callable[[], None] = lambda: None) -> Iterator[None]:
     """The machine for what is timed (`alone`), or together with others that are not; `waiting` is called before a wait.

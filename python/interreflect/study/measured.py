@@ -33,6 +33,7 @@ def measured(study: Study, folder: str | Path) -> list[tuple[Record, ...]]:
     records = [record for cell in cells if (record := store.read(cell_key(study, cell))) is not None]
     if len(records) != len(cells):
         raise ValueError(f"{folder}: {len(cells) - len(records)} of {len(cells)} cells cannot be read")
+    cache.trim(keep=Path(folder))
     count = len(study.seeds)
     return [tuple(records[index : index + count]) for index in range(0, len(records), count)]
 
