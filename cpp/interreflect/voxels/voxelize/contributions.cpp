@@ -116,7 +116,9 @@ struct Voxel {
     float area = 0, total = 0;
     vec3 albedo{0}, position{0}, normal{0}, emission{0};
     // The largest part of a triangle, the first of equals, among those that face as the first does, and among the others.
-    Contribution largest[2];
+    const Contribution* largest[2] = {nullptr, nullptr};
+    float largest_area[2] = {0, 0};
+    vec3 facing{0};  // of the first
 
     void add(const Contribution& c) {
         total += c.total;
@@ -124,8 +126,11 @@ struct Voxel {
         albedo += c.albedo;
         position += c.position;
         normal += c.normal * c.area;
-        const bool opposed = largest[0].area > 0.0f && glm::dot(largest[0].normal, c.normal) < 0.0f;
-        if (c.area > largest[opposed].area) largest[opposed] = c;
+        const bool opposed = glm::dot(facing, c.normal) < 0.0f;
+        if (!(c.area > largest_area[opposed])) return;
+        largest[opposed] = &c;
+        largest_area[opposed] = c.area;
+        if (!opposed) facing = c.normal;
     }
 };
 
@@ -136,11 +141,11 @@ VoxelPoint point_of(const Contribution& part, const vec3& centre, const Domain& 
 /// Front and back of a voxel: its largest part; and the largest that faces away, or, where that is but a sliver, the front's own
 /// back.
 void write_points(const Voxel& voxel, const vec3& centre, std::size_t i, VoxelGrid& grid) {
-    const bool second = voxel.largest[1].area > voxel.largest[0].area;
-    const Contribution &front = voxel.largest[second ? 1 : 0], &other = voxel.largest[second ? 0 : 1];
+    const bool second = voxel.largest_area[1] > voxel.largest_area[0];
+    const Contribution &front = *voxel.largest[second ? 1 : 0], *other = voxel.largest[second ? 0 : 1];
     grid.points[i] = point_of(front, centre, grid.domain);
-    const bool two = other.area > 0.1f * front.area && glm::dot(front.normal, other.normal) < -0.2f;
-    grid.backs[i] = two ? point_of(other, centre, grid.domain) : grid.points[i];
+    const bool two = other != nullptr && other->area > 0.1f * front.area && glm::dot(front.normal, other->normal) < -0.2f;
+    grid.backs[i] = two ? point_of(*other, centre, grid.domain) : grid.points[i];
     if (two) return;
     grid.backs[i].normal = -front.normal;
     grid.backs[i].reflects = front.back;

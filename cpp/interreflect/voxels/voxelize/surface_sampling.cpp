@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "voxels/voxelize/contributions.h"
+#include "voxels/voxelize/nearest_texel.h"
 
 namespace interreflect {
 namespace {
@@ -13,20 +14,17 @@ constexpr float most_voxels = 0x1p20f;
 /// What a triangle looks like at samples that stand for `area` each.
 struct Appearance {
     const VoxelTriangle& triangle;
-    int albedo_level = 0, emission_level = 0;
+    NearestTexel albedo_map, emission_map;
 
     Appearance(const VoxelTriangle& t, float area) : triangle(t) {
-        if (t.albedo_map != nullptr) albedo_level = t.level(*t.albedo_map, area);
-        if (t.emission_map != nullptr) emission_level = t.level(*t.emission_map, area);
+        if (t.albedo_map != nullptr) albedo_map.choose(*t.albedo_map, t.level(*t.albedo_map, area));
+        if (t.emission_map != nullptr) emission_map.choose(*t.emission_map, t.level(*t.emission_map, area));
     }
-    vec3 albedo(const vec2& uv) const {
-        return triangle.albedo_map == nullptr ? triangle.material->albedo
-                                              : triangle.material->albedo * triangle.albedo_map->nearest(uv, albedo_level);
+    [[gnu::always_inline]] vec3 albedo(const vec2& uv) const {
+        return albedo_map.chosen() ? triangle.material->albedo * albedo_map.at(uv) : triangle.material->albedo;
     }
-    vec3 emission(const vec2& uv) const {
-        return triangle.emission_map == nullptr
-                   ? triangle.material->emission
-                   : triangle.material->emission * triangle.emission_map->nearest(uv, emission_level);
+    [[gnu::always_inline]] vec3 emission(const vec2& uv) const {
+        return emission_map.chosen() ? triangle.material->emission * emission_map.at(uv) : triangle.material->emission;
     }
 };
 
