@@ -46,6 +46,10 @@ class Tinted:
     second_tint: Tint | None = Tint(error=0.1)
     bounces: int | None = 1
     name = "tinted"
+    own_stages = ()
+
+    def exactly(self, stages, samples):
+        return self
 
     def knobs(self):
         tints = {"first_tint": self.first_tint, "second_tint": self.second_tint}

@@ -62,8 +62,9 @@ def test_an_exact_stage_with_few_samples_is_charged_with_its_noise_and_the_count
     )
     shares = {stage.stage: stage for stage in found.stages}
     assert shares["first_tint"].status == MORE_SAMPLES
-    # .04 of .04 + .01, of which the 64 samples leave 1/16; 2304 independent values a seed know a variance to 3 %, four seeds to 1.5 %
-    assert shares["first_tint"].error == pytest.approx(0.8 * 15 / 16, abs=0.03)
+    # .04 of .04 + .01, with the 1/16 of it that the 64 samples leave; 2304 independent values a seed know a variance to 3 %,
+    # four seeds to 1.5 %
+    assert shares["first_tint"].error == pytest.approx(0.8, abs=0.03)
     assert found.noise / found.error == pytest.approx(0.8, abs=0.03)
     assert found.exact_noise == pytest.approx(0.8 / 16, abs=0.01)
     assert shares["second_tint"].error == pytest.approx(0.2, abs=0.03)
@@ -116,11 +117,40 @@ def test_a_fault_planted_in_one_stage_of_a_real_method_is_found_there(fault, tmp
     assert len(found.images().axes) == 3 + len(found.ranking) + sum(bool(s.note) for s in found.stages) + 1
 
 
-def test_a_method_without_techniques_has_all_its_error_where_no_stage_is(tmp_path, monkeypatch):
+@pytest.fixture
+def box(tmp_path, monkeypatch):
+    """Attribution on a small Cornell box, whose truth has a hundredth of the noise of two paths."""
     monkeypatch.setenv("INTERREFLECT_CACHE", str(tmp_path / "cache"))
-    found = attribute(
-        ir.methods.PathTracing(spp=2), ir.scenes.cornell_box(), size=(24, 18), reference=Reference(1e-2, 64), folder=tmp_path / "a"
-    )
-    assert [(stage.stage, stage.status) for stage in found.stages] == [("path_trace", FIXED)]
-    assert found.rest == 1 and found.interaction == pytest.approx(0)
-    assert found.noise == pytest.approx(found.error, rel=0.5)  # an unbiased estimate errs by noise alone; the truth's is a hundredth
+    scene, truth = ir.scenes.cornell_box(), Reference(1e-3, 1024)
+    return lambda method, samples: attribute(method, scene, size=(24, 18), samples=samples, reference=truth, folder=tmp_path / "a")
+
+
+def test_all_the_error_of_path_tracing_is_its_own_samplings(box):
+    found = box(ir.methods.PathTracing(spp=2), 16)
+    (stage,) = found.stages
+    assert (stage.stage, stage.status, stage.counterpart) == ("path_trace", MORE_SAMPLES, "path-tracing")  # spp=16 is the default
+    # The eighth of its noise that the counterpart has is charged too; eight frames of 432 pixels know a variance to some 10 %
+    assert stage.error == pytest.approx(1, abs=0.2) and not stage.note
+    assert found.rest == pytest.approx(0, abs=0.1) and found.interaction == pytest.approx(0, abs=0.2)
+    assert found.noise == pytest.approx(found.error, rel=0.3)  # an unbiased estimate errs by noise alone
+    (stage,) = box(ir.methods.PathTracing(spp=16), 16).stages
+    assert stage.status == EXACT
+
+
+def test_denoised_path_tracing_is_charged_with_its_noise_and_the_denoisers_bias(box):
+    pytest.importorskip("pyoidn")
+    found = box(ir.methods.PathTracingDenoised(), 64)
+    shares = {stage.stage: stage for stage in found.stages if stage.status in (REPLACED, MORE_SAMPLES)}
+    assert [shares[name].counterpart for name in ("path_trace", "denoise")] == ["path-tracing-denoised spp=64", "path-tracing spp=1"]
+    assert all(share.error > 0.05 for share in shares.values())
+    # Without both it is unbiased path tracing, which has nothing but noise.
+    assert found.rest == pytest.approx(0, abs=0.05)
+    assert sum(share.error for share in shares.values()) + found.rest + found.interaction == pytest.approx(1)
+
+
+def test_what_sharing_is_charged_with_does_not_depend_on_the_counterparts_rays(box):
+    method = ir.methods.VoxelConeTracing(grid=ir.Grid(resolution=16))
+    few, many = ({stage.stage: stage for stage in box(method, samples).stages}["share"] for samples in (16, 64))
+    # Where rays take the cones' place, sharing them makes more noise than the method itself has error: 1.5 of it for 16 rays.
+    assert few.low <= many.error <= few.high
+    assert few.error < 0.4 and many.error < 0.4

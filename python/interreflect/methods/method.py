@@ -7,9 +7,9 @@ import functools
 import re
 import time
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from pathlib import Path
-from typing import Any, TypeVar, dataclass_transform
+from typing import Any, ClassVar, TypeVar, dataclass_transform
 
 from interreflect import _core
 from interreflect.frame import Frame, Image
@@ -44,6 +44,8 @@ def method(cls: type[Self]) -> type[Self]:
 
 class Method(ABC):
     """A composition of stages. Subclasses are made by `@method`, fields are knobs; `bounces` is the transport they aim at."""
+
+    own_stages: ClassVar[tuple[str, ...]] = ()  # stages of the profile that no technique makes, but that `exactly` makes exact
 
     @property
     def bounces(self) -> int | None:
@@ -109,6 +111,10 @@ class Method(ABC):
 
         A method with memory gives its history as a third; the next frame finds it in `view.history`, None in the first.
         """
+
+    def exactly(self, stages: Collection[str], samples: int) -> Method:
+        """What renders as this method does but for some of its `own_stages`, which are exact; random ones take at least `samples`."""
+        return self
 
     def _repr_html_(self) -> str:
         from interreflect import display

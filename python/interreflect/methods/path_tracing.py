@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
+from typing import ClassVar
+
 from interreflect import _core
 from interreflect.frame import Image
 from interreflect.methods.knobs import knob
@@ -28,6 +31,11 @@ class PathTracing(Method):
     pattern: int = knob(
         default=4, doc="pixels at equal places of an n x n pattern share their random numbers in blocks of 4 n", minimum=1, maximum=32
     )
+
+    own_stages: ClassVar = ("path_trace",)
+
+    def exactly(self, stages: Collection[str], samples: int) -> PathTracing:
+        return self.replace(spp=max(self.spp, samples), milliseconds=None) if stages else self
 
     def compose(self, view: View, profile: Profile) -> tuple[Image, Image]:
         with profile.stage("path_trace") as note:

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
+from typing import ClassVar
+
 import numpy as np
 
 from interreflect import _core
@@ -9,6 +12,7 @@ from interreflect.frame import Image
 from interreflect.methods.denoiser import denoiser_for
 from interreflect.methods.knobs import knob
 from interreflect.methods.method import Method, method
+from interreflect.methods.path_tracing import PathTracing
 from interreflect.methods.prepared import View
 from interreflect.profile import Profile
 from interreflect.stages import core_camera
@@ -32,6 +36,13 @@ class PathTracingDenoised(Method):
     bounces: int | None = knob(default=1, doc="indirect bounces; None: all", minimum=0, optional=True)
     quality: str = knob(default="fast", doc="of the denoiser", choices=("fast", "balanced", "high"))
     scale: float = knob(default=1.0, doc="side of the traced picture as a share of the frame's", minimum=0.1, maximum=1.0)
+
+    own_stages: ClassVar = ("path_trace", "denoise")
+
+    def exactly(self, stages: Collection[str], samples: int) -> Method:
+        """Exact denoising is none, at full size."""
+        spp = max(self.spp, samples) if "path_trace" in stages else self.spp
+        return PathTracing(spp=spp, bounces=self.bounces) if "denoise" in stages else self.replace(spp=spp)
 
     def compose(self, view: View, profile: Profile) -> tuple[Image, Image]:
         width, height = view.size

@@ -14,7 +14,7 @@ from interreflect import _core
 from interreflect.methods.knobs import is_technique
 from interreflect.methods.method import Method
 from interreflect.study.interface import Image, Scene
-from interreflect.study.measured import measured, same, study_folder
+from interreflect.study.measured import measured, same, study_folder, words
 from interreflect.study.records import OK, Record, Records
 from interreflect.study.reference import Reference, camera_name
 from interreflect.study.study import Study
@@ -144,6 +144,7 @@ def attribute(
 ) -> Attribution:
     """Each stage's share of a method's error and time on one view, by exact counterparts one at a time and all but one.
 
+    Counterparts of techniques are their stages' own; a method tells those of its other stages (`own_stages`): more paths, no denoising.
     Counterparts that are random estimates take `samples` samples; the noise that this leaves is known from the seeds, subtracted and
     stated (`exact_noise`).
     A stage that is exact already but has fewer samples is measured too: its share is its noise. Seeds are averaged, the truth's noise
@@ -156,8 +157,8 @@ def attribute(
         raise ValueError(f"attribute: at least two seeds tell noise from error, got {tuple(seeds)}")
     name = camera_name(scene, camera)
     plan = {stage: counterpart_of(stage, technique, samples) for stage, technique in _fields(method).items()}
-    changes = {stage: new for stage, (status, new) in plan.items() if status in MEASURED}
-    variants = _variants(method, changes)
+    plan |= {stage: own_counterpart(method, stage, samples) for stage in method.own_stages}
+    variants = _variants(method, {stage: new for stage, (status, new) in plan.items() if status in MEASURED}, samples)
     folder = study_folder("attribution", scene, name, size, method) if folder is None else Path(folder)
     base: dict[str, Any] = {"scenes": [scene], "cameras": [name], "size": size, "seeds": tuple(seeds)}
     base["reference"] = reference or Reference()
@@ -184,6 +185,14 @@ def counterpart_of(stage: str, technique: Any, samples: int) -> tuple[str, Any]:
     return (MORE_SAMPLES, technique.replace(samples=samples)) if isinstance(few, int) and few < samples else (EXACT, None)
 
 
+def own_counterpart(method: Method, stage: str, samples: int) -> tuple[str, Method | None]:
+    """The same for a stage that the method makes itself; what would be exact is another method."""
+    exact = method.exactly([stage], samples)
+    if same(exact) == same(method):
+        return EXACT, None
+    return (MORE_SAMPLES if type(exact) is type(method) else REPLACED), exact
+
+
 def _with_samples(technique: Any, samples: int) -> Any:
     return technique.replace(samples=samples) if isinstance(getattr(technique, "samples", None), int) else technique
 
@@ -195,12 +204,17 @@ def _fields(method: Method) -> dict[str, Any]:
     return held | absent
 
 
-def _variants(method: Method, changes: Mapping[str, Any]) -> dict[str, Method]:
+def _variants(method: Method, changes: Mapping[str, Any], samples: int) -> dict[str, Method]:
     """As it is, with one stage exact, with all but one exact, with all exact."""
-    variants = {AS_IS: method, ALL_EXACT: method.replace(changes)}
+
+    def exact(stages: Sequence[str]) -> Method:
+        own = [stage for stage in stages if stage in method.own_stages]
+        return method.replace({stage: changes[stage] for stage in stages if stage not in own}).exactly(own, samples)
+
+    variants = {AS_IS: method, ALL_EXACT: exact(list(changes))}
     for stage in changes:
-        variants[stage] = method.replace({stage: changes[stage]})
-        variants[f"not {stage}"] = method.replace({other: new for other, new in changes.items() if other != stage})
+        variants[stage] = exact([stage])
+        variants[f"not {stage}"] = exact([other for other in changes if other != stage])
     return variants
 
 
@@ -227,13 +241,13 @@ def _judge(
     for stage in _in_order(spent, plan):
         status, counterpart = plan.get(stage, (FIXED, None))
         milliseconds = spent.get(stage, np.nan)
-        share = StageShare(stage, _words(method, stage), repr(counterpart) if counterpart else "", status)
+        share = StageShare(stage, _words(method, stage), _named(counterpart), status)
         share = dataclasses.replace(share, milliseconds=milliseconds, time=milliseconds / frame)
         if status in MEASURED:
-            # What the counterpart itself adds to the noise between seeds is no error of the stage that it replaces.
-            own = max(0.0, (noises[stage] - noises[AS_IS] + noises[ALL_EXACT] - noises[f"not {stage}"]) / 2)
-            alone = errors[AS_IS] - errors[stage] + own
-            added = errors[f"not {stage}"] - errors[ALL_EXACT] + own
+            # Noise between seeds is the counterparts' own, and no stage's error, but for what vanishes with this stage alone.
+            own = max(0.0, noises[AS_IS] - noises[stage]) / (1 - _noise_kept(method, stage, counterpart))
+            alone = (errors[AS_IS] - noises[AS_IS]) - (errors[stage] - noises[stage]) + own
+            added = (errors[f"not {stage}"] - noises[f"not {stage}"]) - (errors[ALL_EXACT] - noises[ALL_EXACT]) + own
             share = dataclasses.replace(share, **_shares(alone, added, share_of, truth_noise))
         stages.append(share)
     owned = sum(stage.error for stage in stages if stage.status in MEASURED)
@@ -284,7 +298,22 @@ def _stage_times(records: Sequence[Record]) -> dict[str, float]:
 
 
 def _words(method: Method, stage: str) -> str:
+    if stage in method.own_stages:
+        return type(method).__name__
     return repr(_fields(method)[stage]) if stage in _fields(method) else ""
+
+
+def _named(counterpart: Any) -> str:
+    return words(counterpart) if isinstance(counterpart, Method) else repr(counterpart) if counterpart else ""
+
+
+def _noise_kept(method: Method, stage: str, counterpart: Any) -> float:
+    """The share of a random stage's noise that its counterpart still has: its variance falls with the number of samples."""
+    before = method if stage in method.own_stages else _fields(method)[stage]
+    if type(before) is not type(counterpart) or getattr(before, "milliseconds", None) is not None:
+        return 0.0
+    few, many = (getattr(side, "samples", None) or getattr(side, "spp", None) for side in (before, counterpart))
+    return few / many if few and many else 0.0
 
 
 def _seed_noise(records: Records, group: Sequence[Record], metric: str) -> float:
