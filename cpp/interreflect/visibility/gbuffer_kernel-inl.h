@@ -233,12 +233,32 @@ HWY_INLINE void finish_pixels(const GBufferJob& job, const Tile& tile, int x0, i
     }
 }
 
+HWY_INLINE void ask_for_line(const void* image, std::size_t begin, std::size_t end) {
+    const char* at = static_cast<const char*>(image);
+    for (std::size_t i = begin; i < end; i += 64) hwy::Prefetch(at + i);
+}
+
+/// The memory that a row of packets will write: 192 lines of cache, which must be read before they are partly written.
+HWY_INLINE void ask_for_pixels(const GBufferJob& job, const Tile& tile, int x0, int y0) {
+    GBuffer& g = job.g;
+    const vec3* const wide[] = {g.position.data(), g.geometric_normal.data(), g.normal.data(),
+                                g.albedo.data(),   g.specular.data(),         g.emission.data()};
+    const void* const narrow[] = {g.alpha.data(),    g.depth.data(),    g.offset.data(),
+                                  g.triangle.data(), g.instance.data(), g.body.data()};
+    for (int y = y0; y < y0 + 4 && y < tile.y1; ++y) {
+        const std::size_t begin = static_cast<std::size_t>(y) * g.width + x0, end = begin + (tile.x1 - x0);
+        for (const vec3* image : wide) ask_for_line(image, 12 * begin, 12 * end);
+        for (const void* image : narrow) ask_for_line(image, 4 * begin, 4 * end);
+    }
+}
+
 void trace_tile(const GBufferJob& job, const Tile& tile) {
     constexpr int together = 8;  // the last packet is placed while the first one's texels come; all fit a first-level cache
     Slot slots[together];
     for (int y = tile.y0; y < tile.y1; y += 4)
         for (int begin = tile.x0; begin < tile.x1; begin += 4 * together) {
             const int count = tile.x1 - begin < 4 * together ? (tile.x1 - begin + 3) / 4 : together;
+            ask_for_pixels(job, tile, begin, y);
             for (int i = 0; i < count; ++i) trace_rays(job, tile, begin + 4 * i, y, slots[i]);
             for (int i = 0; i < count; ++i) ask_for_vertices(job, slots[i]);
             for (int i = 0; i < count; ++i) shade_surfaces(job, slots[i]);
