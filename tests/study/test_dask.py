@@ -13,6 +13,7 @@ from study_fakes import Fake, Scene, lasting
 from typer.testing import CliRunner
 
 from interreflect.cli import app
+from interreflect.study import dask
 from interreflect.study.run import run
 from interreflect.study.store import load_records
 from interreflect.study.study import Study, sweep
@@ -78,6 +79,23 @@ def test_a_process_of_the_cluster_that_dies_costs_its_cell_a_retry(shared, tmp_p
     assert list(records.table["status"]) == ["ok"] * 8
     assert all(math.isfinite(error) for error in records.table["relmse"])
     client.wait_for_workers(2, timeout=30)
+
+
+def test_an_interrupt_ends_the_cells_under_way(shared, tmp_path, monkeypatch):
+    client, folder = shared
+    (folder / "renders").write_bytes(b"")
+    collect = dask._Dispatch._collect
+
+    def collect_until_both_hang(self):
+        if len((folder / "renders").read_bytes()) == 2:
+            raise KeyboardInterrupt
+        collect(self)
+
+    monkeypatch.setattr(dask._Dispatch, "_collect", collect_until_both_hang)
+    with pytest.raises(KeyboardInterrupt):
+        run(study_of([Fake(error=e, mode="hangs") for e in (0.1, 0.2)], repeats=0), tmp_path / "r", client=client)
+    # Both processes have one thread each; the cells would have kept them for ten minutes.
+    assert [task.result(timeout=30) for task in client.map(abs, [-1, -2], pure=False)] == [1, 2]
 
 
 def test_a_cluster_resumes_what_one_machine_began(shared, tmp_path):

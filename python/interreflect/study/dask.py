@@ -5,6 +5,7 @@ from __future__ import annotations
 import collections
 import dataclasses
 import time
+import uuid
 from typing import Any
 
 from interreflect.study.messages import Phase, Pictures, Reply, Request
@@ -31,13 +32,14 @@ class _Dispatch:
     """The tasks under way."""
 
     def __init__(self, client: Any, plan: Plan) -> None:
-        self.client, self.plan = client, plan
+        self.client, self.plan, self.name = client, plan, uuid.uuid4().hex
         self.timed = plan.study.repeats > 0
         self.scenes: dict[str, Any] = {}  # hash -> future of the pickled scene
         self.under_way: dict[Any, tuple[int, str, str]] = {}  # task -> cell, address of the process, host
         self.tries: collections.Counter[int] = collections.Counter()
 
     def run(self) -> None:
+        """KeyboardInterrupt and other ends take the cells under way along."""
         cells, more = self.plan.open_cells(), True
         with self.plan.progress() as progress:
             try:
@@ -47,6 +49,8 @@ class _Dispatch:
                     progress.update(self.plan.settled - progress.n)
             finally:
                 self.client.cancel([*self.under_way, *self.scenes.values()])
+                if self.under_way:
+                    self.client.run(end_cells, self.name, on_error="ignore")
 
     def _fill(self, cells: Any, progress: Any) -> bool:
         """Give every process with room a cell; False where none is left."""
@@ -83,6 +87,7 @@ class _Dispatch:
             self.plan.request(index),
             self.scenes[scene],
             self.plan.limits,
+            self.name,
             pure=False,
             workers=[address],
             allow_other_workers=True,
@@ -106,13 +111,28 @@ class _Dispatch:
                 self.plan.keep(index, reply)
 
 
-def measure_there(request: Request, scene: bytes, limits: Limits) -> Answer:
+_crews: dict[str, set[Crew]] = collections.defaultdict(set)  # name of a run -> its cells under way in this process
+_ended: set[str] = set()  # names of runs
+
+
+def end_cells(run: str) -> None:
+    """Called in every process of the cluster when a run ends before its cells."""
+    _ended.add(run)
+    for crew in list(_crews[run]):
+        crew.interrupt()
+
+
+def measure_there(request: Request, scene: bytes, limits: Limits, run: str) -> Answer:
     """The task: measure a cell on this host, and say what host it is."""
     from interreflect.machine import about
 
     told: list[Phase | Pictures] = []
     with Crew() as crew:
-        reply = crew.measure(request, lambda: scene, limits, told.append)
+        _crews[run].add(crew)
+        try:
+            reply = Reply({}, interrupted=True) if run in _ended else crew.measure(request, lambda: scene, limits, told.append)
+        finally:
+            _crews[run].discard(crew)
     here = {"machine": about().asdict(), "threads": request.threads or about().threads}
     return dataclasses.replace(reply, changes=here | reply.changes), [message for message in told if isinstance(message, Pictures)][-1:]
 

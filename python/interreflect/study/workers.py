@@ -104,9 +104,13 @@ class Worker:
         self.scene = request.scene_hash
         return reply
 
-    def close(self) -> None:
-        """End the process, whatever it is doing."""
+    def kill(self) -> None:
+        """End the process, whatever it is doing; who waits for its reply hears of it."""
         self._process.kill()
+
+    def close(self) -> None:
+        """End the process, and what belongs to it."""
+        self.kill()
         self._process.wait()
         for stream in (self._requests, self._replies):
             with suppress(OSError):  # what could not be sent any more
@@ -168,6 +172,7 @@ class Crew:
     def __init__(self) -> None:
         self._worker: Worker | None = None
         self._calibration: Calibration | None = None  # once a study, however many workers it takes
+        self._interrupted = False
 
     def __enter__(self) -> Crew:
         with suppress(IndexError):  # no more of them
@@ -199,12 +204,22 @@ class Crew:
                 return self._try(request, scene, limits, show)
             except Lost as lost:
                 self._end()
+                if self._interrupted:
+                    return Reply({}, interrupted=True)
                 if not (lost.outside and again):
                     return Reply({"status": FAILED, "failure": str(lost), "limits": lost.limits})
         raise AssertionError
 
+    def interrupt(self) -> None:
+        """End the cell that another thread measures."""
+        self._interrupted, worker = True, self._worker
+        if worker is not None:
+            worker.kill()
+
     def _try(self, request: Request, scene: Callable[[], bytes], limits: Limits, show: Show) -> Reply:
         self._worker = self._worker or Worker()
+        if self._interrupted:  # before there was a worker to end
+            raise Lost("interrupted")
         given = None if self._worker.scene == request.scene_hash else scene()
         request = dataclasses.replace(request, scene=given, calibration=self._calibration)
         reply = self._worker.measure(request, limits, show)
