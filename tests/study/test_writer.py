@@ -16,6 +16,7 @@ from interreflect.study import measure
 from interreflect.study.measure import Bench
 from interreflect.study.messages import Phase, Pictures, receive, send
 from interreflect.study.plan import Plan
+from interreflect.study.reference import Reference
 from interreflect.study.run import run
 from interreflect.study.store import Store, load_records
 from interreflect.study.study import Study
@@ -88,6 +89,17 @@ def test_the_pictures_are_on_their_way_before_the_metrics_are_computed(tmp_path,
         request = dataclasses.replace(plan.request(0), scene=plan.scene_of(0)(), repeats=0)
     assert Bench(say, lambda: None).measure(request).changes["status"] == "ok"
     assert order[-3:] == ["metrics", "pictures", "compared"]
+
+
+def test_the_studys_bar_is_told_how_far_a_truth_is(tmp_path, fake_truth):
+    told: list[Phase | Pictures] = []
+    wanted = Study(name="w", scenes=[Scene()], methods=[Fake()], size=(32, 24), repeats=0, reference=Reference(1e-9, 64))
+    with Plan(wanted, tmp_path / "r", Limits()) as plan:
+        request = dataclasses.replace(plan.request(0), scene=plan.scene_of(0)())
+    assert Bench(told.append, lambda: None).measure(request).changes["truth_spp"] == 64
+    words = [message.detail for message in told if isinstance(message, Phase) and message.name == "truth" and message.detail]
+    assert words[0].startswith("0 of 64 spp") and "left" in words[0]
+    assert words[-1].startswith("64 of 64 spp, noise ")
 
 
 def test_no_record_speaks_of_pictures_that_could_not_be_written(tmp_path, fake_truth, monkeypatch):

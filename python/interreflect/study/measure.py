@@ -14,6 +14,7 @@ import numpy as np
 
 import interreflect.cache as cache
 from interreflect import metrics
+from interreflect.progress import told_to
 from interreflect.study.calibration import Calibration, calibrate
 from interreflect.study.interface import Frame, Method, Prepared, Scene
 from interreflect.study.locks import Claims, machine
@@ -111,11 +112,14 @@ class Bench:
     def _truth(self, scene: Scene, request: Request) -> Truth:
         wanted = request.reference
         if request.truth not in self._truths:
-            with self._first_in_line(request.truth), self._turn("truth", alone=False):
+            with self._first_in_line(request.truth), self._turn("truth", alone=False), told_to(self._far):
                 self._truths[request.truth] = reference(
                     scene, request.camera, request.size, request.bounces, wanted.noise, wanted.max_spp, threads=request.threads
                 )
         return self._truths[request.truth]
+
+    def _far(self, words: str) -> None:
+        self._say(Phase("truth", words))
 
     @contextmanager
     def _first_in_line(self, truth: str) -> Iterator[None]:

@@ -57,9 +57,10 @@ class Request:
 @dataclasses.dataclass(frozen=True)
 class Phase:
     """What the worker begins to do ("truth", "calibrate", "prepare", "render", "metrics"), or awaits: its "turn", the parent's "go"
-    before it renders on."""
+    before it renders on. detail: how far it is, in words."""
 
     name: str
+    detail: str = ""
 
 
 @dataclasses.dataclass(frozen=True, eq=False)

@@ -62,4 +62,4 @@ def _follow(plan: Plan, progress: Any, index: int, message: Phase | Pictures) ->
     elif message.name == GO:
         plan.writer.settle()
     else:
-        progress.set_postfix_str(f"{plan.title(index)}, {message.name}")
+        progress.set_postfix_str(", ".join(filter(None, (plan.title(index), message.name, message.detail))))
