@@ -12,10 +12,6 @@ import interreflect as ir
 from interreflect.stability import invariants
 
 CONES = ir.methods.VoxelConeTracing(grid=ir.Grid(resolution=64), share=ir.EveryPixel())
-# Voxels with one side lean further in hue: the row that sees a pixel's light in the next row has more to see.
-ONE_SIDED = CONES.replace(
-    prefilter=ir.SurfaceCoverage(), light_voxels=ir.TracedLighting(), march=ir.DiffuseCones(normal_offset=1.5, density=1.0)
-)
 RAYS = CONES.replace(march=ir.TracedRays(samples=16), glossy=ir.TracedRays(samples=16))
 FINE_RAYS = RAYS.replace({"grid.resolution": 128, "march.samples": 64})
 ROWS = {row.name: row for row in ir.stability.failures}
@@ -73,7 +69,7 @@ NOTICED_BY = {
     "mip of half the weight": failure("occlusion by a wall", 0.2),
     "march divided by pi twice": closed_form(4, CONES, 0.07),  # what cones may lose between layers of voxels by their contract
     "march mirrored": failure("shift of chrominance", 1.0, size=SMALL),
-    "rows of the march exchanged": failure("shift of chrominance", 1.0, ONE_SIDED, SMALL),
+    "rows of the march exchanged": failure("pixels without light", 0.05, size=SMALL),  # bars before the sky, which has no light to give
     "cones in steps of absolute length": failure("scene scaled up", 1e3),
     "seed depends on threads": invariant("_threads", RAYS),
     "lobe halved": failure("sharp Phong lobe", 300.0, RAYS, SMALL),
