@@ -165,6 +165,15 @@ def test_traced_shadows_of_an_emitter_follow_its_form_factor():
     assert few[1].std() < few[0].std() / 6 or few[0].std() < 1e-3  # stratified: at least as the square root of the samples
 
 
+def test_the_filter_of_the_sky_does_not_mix_the_faces_of_a_box():
+    under = scene(ir.EnvironmentLight(radiance=(1.0,) * 3))
+    gbuffer = ir.trace_gbuffer(under, size=(96, 72))
+    top = (np.asarray(gbuffer.normal)[..., 1] > 0.9) & (np.asarray(gbuffer.position)[..., 1] > 0.4)
+    image = sky(ir.TracedSky(samples=4, filter_radius=2), under, size=(96, 72))
+    # Nothing hides the sky from the top, a side sees half of it; the floor beside, far below, weighs less than 1e-3.
+    assert top.sum() > 50 and (image[top] / [0.6, 0.5, 0.4]).min() > 0.999
+
+
 def test_a_reflective_shadow_map_holds_the_flux_that_the_scene_catches():
     spot = ir.SpotLight(position=(0, 2, 0), direction=(0, -1, 0), intensity=(2, 4, 6), inner=20, outer=30)
     lit = scene(spot)
@@ -179,6 +188,8 @@ def test_a_reflective_shadow_map_holds_the_flux_that_the_scene_catches():
     expected = 36 * -direction[1] * np.array(SUN.irradiance)
     assert np.asarray(sunlit.incident).sum((0, 1), dtype=np.float64) == pytest.approx(expected, rel=1e-2)
     solid = np.asarray(sunlit.normal).any(-1)
+    assert np.array_equal(solid, np.asarray(sunlit.flux).any(-1))
+    assert (np.asarray(sunlit.normal)[solid] @ direction < 0).all()  # on the side that the sun sees
     assert np.allclose(np.asarray(sunlit.flux)[solid], np.asarray(sunlit.incident)[solid] * [0.6, 0.5, 0.4], rtol=1e-5)
     with pytest.raises(ValueError, match="spot or directional"):
         _core.reflective_shadow_map(scene(LIGHTS["point"]).core, 0, 16)

@@ -46,3 +46,22 @@ def test_a_scene_of_another_size_looks_the_same_but_for_its_lengths(name: str, c
     # Texels are 1/256 steps: a footprint that differs by rounding weighs them otherwise by as little.
     np.testing.assert_allclose(after["albedo"][both], before["albedo"][both], atol=1e-3)
     assert np.array_equal(after["emission"][~hit], before["emission"][~hit])
+
+
+@pytest.mark.parametrize("uses", [1, 2])
+def test_shading_normals_stay_across_a_surface_that_is_stretched(uses: int) -> None:
+    # Normal and plane of the triangle agree; stretched twofold along x, both are as (1 / 2, 1, 0). Used twice, it is an instance.
+    corners = np.array([[-1, 1, 0], [1, -1, 0], [0, 0, -2]], np.float32)
+    mesh = ir.Mesh(corners, np.array([[0, 1, 2]], np.uint32), normals=np.array([[1, 1, 0]] * 3, np.float32) / np.float32(np.sqrt(2)))
+    stretched = np.diag([2.0, 1.0, 1.0, 1.0])
+    away = stretched.copy()
+    away[2, 3] = -50.0
+    meshes = [mesh.replace(transform=matrix) for matrix in (stretched, away)[:uses]]
+    view = ir.Camera(position=(1, 2, -0.7), target=(0, 0, -0.7), fov_x=40)
+    scene = ir.Scene(meshes=meshes, lights=[], cameras={"view": view})
+    gbuffer = ir.trace_gbuffer(scene, size=(24, 24))
+    hit = np.isfinite(gbuffer.depth)
+    assert hit.mean() > 0.2
+    expected = np.array([0.5, 1, 0]) / np.sqrt(1.25)
+    np.testing.assert_allclose(gbuffer.normal[hit], np.broadcast_to(expected, (hit.sum(), 3)), atol=1e-5)
+    np.testing.assert_allclose(gbuffer.geometric_normal[hit], np.broadcast_to(expected, (hit.sum(), 3)), atol=1e-5)

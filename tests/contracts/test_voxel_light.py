@@ -282,6 +282,31 @@ def test_octants_show_the_side_that_an_eye_looking_that_way_sees_at_every_level(
             assert np.allclose(pyramid.level(i, octant)[..., 3], surface.level(i)[..., 3], atol=1e-3)
 
 
+def test_of_two_voxels_in_a_coarser_texel_an_eye_sees_most_of_the_nearer():
+    # Two sheets in the two layers of one texel, lit from above and from below. Down y an eye meets the red one alone, along x and z
+    # as much of the green sheet's dark top: two thirds are red. Upwards the red sheet's dark underside hides nothing.
+    domain = _core.Domain(lower=[-1.0, -1.0, -1.0], voxel_size=1.0, cells=[2, 2, 2])
+    sheets = floor(0.5, albedo=(0.8, 0.0, 0.0)), floor(-0.5, albedo=(0.0, 0.8, 0.0))
+    suns = [SUN, ir.DirectionalLight(direction=(0, 1, 0), irradiance=(np.pi,) * 3)]
+    pyramid = ir.prefilter(ir.OctantCoverage(), lit_of(ir.TracedLighting(both_sides=True), scene_of(*sheets, lights=suns), domain=domain))
+    for octant in DOWN:
+        assert np.allclose(pyramid.level(1, octant).ravel(), (0.8 * 2 / 3, 0, 0, 1), atol=1e-3)
+    for octant in UP:
+        assert np.allclose(pyramid.level(1, octant).ravel(), (0, 0.8, 0, 1), atol=1e-3)
+
+
+def test_every_block_of_voxels_starts_in_the_dark():
+    # Stairs that face up and down in turns, lit from above: no side keeps light of a block before it, whichever thread lit that.
+    steps = [quad(np.asarray([[x, y, 1], [x + 1, y, 1], [x + 1, y, -1], [x, y, -1]][:: 1 if y % 2 else -1], float), albedo=(0.5,) * 3)
+             for x, y in enumerate(range(16))]  # fmt: skip
+    domain = _core.Domain(lower=[0.0, -0.5, -1.0], voxel_size=1 / 16, cells=[256, 256, 32])
+    lit = lit_of(ir.TracedLighting(both_sides=True), scene_of(*steps, lights=[SUN]), domain=domain)
+    up = lit.voxels.normal[:, 1] > 0
+    assert up.any() and (~up).any() and len(up) > 4096
+    np.testing.assert_allclose(lit.radiance, np.where(up, 0.5, 0.0)[:, None].repeat(3, 1), atol=1e-5)
+    np.testing.assert_allclose(lit.back, np.where(up, 0.0, 0.5)[:, None].repeat(3, 1), atol=1e-5)
+
+
 def test_a_side_that_no_light_falls_on_hides_no_other_surface_in_the_same_texel():
     # A floor and a wall on it, both lit on their fronts. Looking up at the wall's foot from the room one sees the wall, not the
     # black underside of the floor.

@@ -29,6 +29,22 @@ def moved_domain(domain, factor, offset):
     return _core.Domain(lower=[float(v) for v in lower], voxel_size=domain.voxel_size * factor, cells=domain.cells)
 
 
+def test_a_voxel_weighs_large_and_tiny_triangles_by_their_area(technique):
+    # A red sheet of two triangles and a blue one of 3,200 meet in the middle of voxels.
+    red = quad([[-2, 0.5, 2], [0, 0.5, 2], [0, 0.5, -2], [-2, 0.5, -2]], albedo=(0.8, 0, 0))
+    x, z = np.meshgrid(np.linspace(0, 2, 41), np.linspace(-2, 2, 41))
+    first = (np.arange(40)[:, None] * 41 + np.arange(40)).ravel()
+    faces = np.concatenate([np.stack([first, first + 41, first + 42], 1), np.stack([first, first + 42, first + 1], 1)])
+    corners = np.stack([x, np.full_like(x, 0.5), z], -1).reshape(-1, 3).astype(np.float32)
+    blue = ir.Mesh(corners, faces.astype(np.uint32), material=ir.Material(albedo=(0, 0, 0.8)))
+    domain = _core.Domain(lower=[-2.5, 0.0, -2.0], voxel_size=1.0, cells=[5, 1, 4])
+    grid = voxels_of(technique, scene_of(red, blue), domain=domain)
+    middle = grid.coordinates[:, 0] == 2
+    assert middle.sum() == 4
+    # Samples half a voxel apart or closer put up to an eighth of the red strip on the wrong side of a border.
+    np.testing.assert_allclose(grid.albedo[middle], [[0.4, 0, 0.4]] * 4, atol=0.05)
+
+
 def test_cells_come_once_in_ascending_order_inside_the_domain(technique):
     grid = voxels_of(technique, scene_of(*soup(1)), 24)
     cells = grid.cell.astype(np.int64)

@@ -233,6 +233,15 @@ TEST(Lights, EnvironmentDensityIntegratesToOneAndIsPositiveWhereThereIsLight) {
     }
 }
 
+TEST(Lights, AnImageOfOneRadianceIsSampledUniformlyOverTheSphere) {
+    Scene scene = ceiling(1);
+    scene.environment = gradient(16, 8);
+    for (auto& texel : scene.environment->image) texel = vec3(3);
+    const LightSampler lights(scene);
+    for (const vec3& d : {vec3(0, 1, 0), vec3(0, -0.99f, 0.14f), vec3(1, 0, 0), vec3(0.6f, 0.8f, 0), vec3(0.3f, -0.5f, -0.81f)})
+        EXPECT_NEAR(lights.environment_pdf(glm::normalize(d)) * 4.0f * pi, 1.0f, 1e-3f);
+}
+
 TEST(Lights, EnvironmentImageLooksAlongMinusZWithRightToTheRight) {
     Scene scene = ceiling(1);
     Environment e;

@@ -83,6 +83,39 @@ TEST(ConeSchedules, LevelsFollowTheDiameter) {
     }
 }
 
+TEST(AirMaps, NameExactlyTheTapsThatReadOneOfEightTexels) {
+    Pyramid pyramid = uniform_pyramid(8, vec4(0));  // 64 texels a row on the second level: two words and a bit
+    Rng rng(3, 1);
+    for (auto& level : pyramid.levels)
+        for (int i = 0; i < 40; ++i) {
+            const ivec3 at =
+                glm::min(ivec3(vec3(rng.uniform(), rng.uniform(), rng.uniform()) * vec3(level.size)), level.size - 1);
+            const int x = i < 8 ? (i % 2 == 0 ? 31 : 32) % level.size.x : at.x;  // beside the border of two words
+            level.texels[4 * level.index(x, at.y, at.z) + 3] = glm::packHalf1x16(0.5f);
+        }
+    const AirMap air(pyramid);
+    for (int number = AirMap::first_level; number <= AirMap::last_level; ++number) {
+        const auto& level = pyramid.levels[static_cast<std::size_t>(number)];
+        const AirMap::Level& map = *air.of(number);
+        const auto solid = [&](const ivec3& at) {
+            const ivec3 inner = glm::clamp(at, ivec3(0), level.size - 1);
+            return level.texels[4 * level.index(inner.x, inner.y, inner.z) + 3] != 0;
+        };
+        for (int z = -1; z < level.size.z; ++z)
+            for (int y = -1; y < level.size.y; ++y)
+                for (int x = -1; x < level.size.x; ++x) {
+                    bool any = false;
+                    for (int i = 0; i < 8; ++i) any = any || solid({x + (i & 1), y + (i >> 1 & 1), z + (i >> 2)});
+                    const auto tap = static_cast<std::uint32_t>(x + 1);
+                    const std::size_t word = (tap >> 5) + map.row_words * static_cast<std::size_t>(y + 1) +
+                                             map.slice_words * static_cast<std::size_t>(z + 1);
+                    // Over the border at x = -1 both texels are the first; there a map may name too many.
+                    if (x < 0) continue;
+                    ASSERT_EQ((map.words[word] >> (tap & 31) & 1) != 0, any) << number << ": " << x << " " << y << " " << z;
+                }
+    }
+}
+
 TEST(Cones, SeeAUniformWorldAsItIs) {
     for (const int faces : {1, 6}) {
         const Pyramid pyramid = uniform_pyramid(6, {0.25f, 1.5f, 40.0f, 1.0f}, faces);
