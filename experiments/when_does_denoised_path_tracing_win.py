@@ -25,6 +25,8 @@ study = ir.Study(
             CONES,
             {
                 "grid.resolution": [32, 64, 128],
+                "march.cones": [40, 80],
+                "march.correlation": [0.0, 1.0],
                 "share": [ir.Interleaved(width=2, height=2), ir.Interleaved(width=4, height=4)],
                 "sky": [ir.ConeSky(), ir.TracedSky()],
             },

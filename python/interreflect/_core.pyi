@@ -870,10 +870,10 @@ class DiffuseCones:
     description: ClassVar[dict[str, Any]]
     stages: ClassVar[tuple[str, ...]]
 
-    def __init__(self, *, set: str=..., cones: int=..., half_angle: float=..., step: float=..., first_diameter: float=..., normal_offset: float=..., level_bias: float=..., density: float=..., cut_off: float=..., own_surface: bool=...) -> None:
+    def __init__(self, *, set: str=..., cones: int=..., half_angle: float=..., step: float=..., first_diameter: float=..., normal_offset: float=..., level_bias: float=..., density: float=..., correlation: float=..., cut_off: float=..., own_surface: bool=...) -> None:
         ...
 
-    def replace(self, *, set: str=..., cones: int=..., half_angle: float=..., step: float=..., first_diameter: float=..., normal_offset: float=..., level_bias: float=..., density: float=..., cut_off: float=..., own_surface: bool=...) -> DiffuseCones:
+    def replace(self, *, set: str=..., cones: int=..., half_angle: float=..., step: float=..., first_diameter: float=..., normal_offset: float=..., level_bias: float=..., density: float=..., correlation: float=..., cut_off: float=..., own_surface: bool=...) -> DiffuseCones:
         ...
 
     def asdict(self) -> dict[str, Any]:
@@ -918,6 +918,10 @@ class DiffuseCones:
         ...
 
     @property
+    def correlation(self) -> float:
+        ...
+
+    @property
     def cut_off(self) -> float:
         ...
 
@@ -956,10 +960,10 @@ class GlossyCone:
     description: ClassVar[dict[str, Any]]
     stages: ClassVar[tuple[str, ...]]
 
-    def __init__(self, *, step: float=..., first_diameter: float=..., normal_offset: float=..., level_bias: float=..., density: float=..., cut_off: float=..., own_surface: bool=...) -> None:
+    def __init__(self, *, step: float=..., first_diameter: float=..., normal_offset: float=..., level_bias: float=..., density: float=..., correlation: float=..., cut_off: float=..., own_surface: bool=...) -> None:
         ...
 
-    def replace(self, *, step: float=..., first_diameter: float=..., normal_offset: float=..., level_bias: float=..., density: float=..., cut_off: float=..., own_surface: bool=...) -> GlossyCone:
+    def replace(self, *, step: float=..., first_diameter: float=..., normal_offset: float=..., level_bias: float=..., density: float=..., correlation: float=..., cut_off: float=..., own_surface: bool=...) -> GlossyCone:
         ...
 
     def asdict(self) -> dict[str, Any]:
@@ -989,6 +993,10 @@ class GlossyCone:
 
     @property
     def density(self) -> float:
+        ...
+
+    @property
+    def correlation(self) -> float:
         ...
 
     @property

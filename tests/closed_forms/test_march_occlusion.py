@@ -55,3 +55,9 @@ def test_what_is_open_is_sky_and_the_rest_is_occlusion(cls: type, row: int) -> N
     technique = cls(samples=64) if cls is ir.TracedRays else cls()
     light = gathered(scene_of(row), technique)
     np.testing.assert_allclose(light.sky.mean(-1) / np.pi + light.occlusion, 1, atol=2e-3)  # the sky's radiance is 1
+
+
+def test_a_balls_occlusion_is_half_as_wrong_where_steps_are_correlated() -> None:
+    """Cones along the ball's side see the same part of it blocked at every step; as independent parts they add up to all."""
+    independent, correlated = (gathered(scene_of(9), ir.DiffuseCones(correlation=c)).occlusion.mean() - occlusion_of(9) for c in (0, 1))
+    assert 0 < correlated < 0.6 * independent

@@ -155,6 +155,26 @@ TEST(Cones, FogBlocksByItsDepthWhateverTheStep) {
     }
 }
 
+TEST(Cones, AlongTheFaceOfASolidAreHalfBlockedIfStepsAreCorrelated) {
+    Pyramid pyramid = uniform_pyramid(6, vec4(0));
+    for (auto& level : pyramid.levels)
+        for (std::size_t t = 3; t < level.texels.size(); t += 4) {
+            const int x = static_cast<int>(t / 4 % level.row()) - 1;
+            level.texels[t] = glm::packHalf1x16(level.size.x == 1 ? 0.5f : x < level.size.x / 2 ? 1.0f : 0.0f);
+        }
+    const auto left_open = [&](float correlation) {
+        ConeBatch batch{};
+        batch.count = 1;
+        set_start(batch, 0, pyramid.domain, {16, 1, 16}, {0, 1, 0}, 0.0f, true);
+        set_direction(batch, 0, {0, 1, 0}, {0, 1, 0});
+        march_cones(pyramid, AirMap(pyramid), make_schedule({0.2f, 4.0f, 1.0f, 0.0f, 1.0f, correlation}, pyramid), 0.0f, batch);
+        return batch.open[0];
+    };
+    EXPECT_NEAR(left_open(1.0f), 0.5f, 1e-3f);
+    EXPECT_LT(left_open(0.5f), 0.4f);
+    EXPECT_LT(left_open(0.0f), 0.05f);
+}
+
 TEST(LobeTables, HoldTheAlbedosOfTheClosedForms) {
     // GROUND_TRUTH.md: GGX at normal view with F = 1; tolerance: 256 samples an entry and interpolation in between.
     const float expected[][2] = {{0.1f, 0.9884f}, {0.25f, 0.9158f}, {0.5f, 0.688f}, {1.0f, 1.0f - std::log(2.0f)}};

@@ -24,6 +24,8 @@ ConeSchedule make_schedule(const ConeShape& shape, const Pyramid& pyramid) {
         step.level = static_cast<int>(level);
         step.blend = level - static_cast<float>(step.level);
         step.exponent = shape.density * length * std::exp2(-level);
+        // Near the finest level a texel is as thin as a surface, whose opacity successive taps have a part of each.
+        step.correlation = shape.correlation * std::clamp(lod - 1.0f, 0.0f, 1.0f);
         step.reach = std::exp2(level);
         schedule.steps.push_back(step);
         // A sample stands for the step around it: half of this one and half of the next lie between the two.

@@ -14,15 +14,17 @@ struct ConeShape {
     float step = 0.5f;         // diameters
     float level_bias = 0;      // levels added to log2(diameter / voxel)
     float density = 1;         // optical depth of a texel as a multiple of what its opacity says
+    float correlation = 0;     // of what blocks the cone at one step and before it, from level 2 on
 };
 
 struct ConeSchedule {
     struct Step {
-        float distance;  // from the cone's start, voxels
-        float reach;     // how far the filter reaches from the sample, voxels
-        float exponent;  // the step's opacity = 1 - (1 - opacity of the level)^exponent
-        float blend;     // share of the next coarser level, in [0, 1)
-        int level;       // the finer of the two levels
+        float distance;     // from the cone's start, voxels
+        float reach;        // how far the filter reaches from the sample, voxels
+        float exponent;     // the step's opacity = 1 - (1 - opacity of the level)^exponent
+        float blend;        // share of the next coarser level, in [0, 1)
+        int level;          // the finer of the two levels
+        float correlation;  // of what blocks the cone here and before
     };
     std::vector<Step> steps;
 };

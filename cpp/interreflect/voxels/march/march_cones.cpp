@@ -220,6 +220,16 @@ HWY_INLINE V stretched_opacity(D d, V a, float exponent) {
     return hn::Sub(one, power(d, clear, exponent));
 }
 
+/// How much of the cone a step newly blocks. Independent of what blocked it before, it is the step's share of what is open; fully
+/// correlated (a wall along the cone covers the same part of it at every step), only what exceeds all that is blocked already.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V newly_blocked(D d, V open, V opacity, float correlation) {
+    const V independent = hn::Mul(open, opacity);
+    if (correlation == 0.0f) return independent;
+    const V beyond = hn::Max(hn::Sub(hn::Add(open, opacity), hn::Set(d, 1.0f)), hn::Zero(d));
+    return hn::MulAdd(hn::Sub(beyond, independent), hn::Set(d, correlation), independent);
+}
+
 /// What each marching cone of a vector sees at its sample: four floats a lane in `colour`. `l1`: the coarser level, or null.
 template <class D>
 HWY_INLINE void sample_lanes(D d, unsigned bits, const LevelView& l0, const Taps& fine, const LevelView* l1, const Taps& coarse,
@@ -314,12 +324,13 @@ ConeCounts march_batch(const Pyramid& pyramid, const AirMap& air, const ConeSche
             own = hn::IfThenElseZero(has_plane, own);
             const V others = hn::Div(hn::Max(hn::Sub(ta, own), zero), hn::Max(hn::Sub(one, own), hn::Set(d, 1e-3f)));
             const V opacity = hn::IfThenElseZero(seeing, stretched_opacity(d, hn::Min(others, one), step.exponent));
+            const V blocked = newly_blocked(d, open, opacity, step.correlation);
             // Radiance is premultiplied by the texel's opacity; the step shows more or less of it.
-            const V share = hn::Mul(open, hn::Div(opacity, hn::Max(ta, hn::Set(d, 1e-6f))));
+            const V share = hn::Div(blocked, hn::Max(ta, hn::Set(d, 1e-6f)));
             r = hn::MulAdd(share, tr, r);
             g = hn::MulAdd(share, tg, g);
             b = hn::MulAdd(share, tb, b);
-            open = hn::Sub(open, hn::Mul(open, opacity));
+            open = hn::Sub(open, blocked);
             active = hn::And(active, hn::Ge(open, hn::Set(d, cut_off)));
         }
         const auto closed = hn::Lt(open, hn::Set(d, cut_off));

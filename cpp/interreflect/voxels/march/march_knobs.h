@@ -12,14 +12,19 @@ struct MarchKnobs {
     double normal_offset = 1.5;
     double level_bias = -1.0;
     double density = 1.0;
+    double correlation = 0.0;
     double cut_off = 0.02;
     bool own_surface = false;
 
     bool operator==(const MarchKnobs&) const = default;
     /// half_angle: radians.
     ConeShape shape(float half_angle) const {
-        return {half_angle, static_cast<float>(first_diameter), static_cast<float>(step), static_cast<float>(level_bias),
-                static_cast<float>(density)};
+        return {half_angle,
+                static_cast<float>(first_diameter),
+                static_cast<float>(step),
+                static_cast<float>(level_bias),
+                static_cast<float>(density),
+                static_cast<float>(correlation)};
     }
 
     static constexpr auto params = std::tuple{
@@ -32,6 +37,11 @@ struct MarchKnobs {
               Unit::none, between(-3, 3)},
         Param{"density", &MarchKnobs::density, "optical depth of a texel as a multiple of what its opacity says", Unit::none,
               between(0.1, 10)},
+        Param{
+            "correlation", &MarchKnobs::correlation,
+            "how far what blocks a wide cone (from level 2 on) covers the same part of it at every step: 0 not at all, as in the "
+            "papers; 1 wholly, as walls along the cone do, but then slanted walls leak",
+            Unit::none, between(0, 1)},
         Param{"cut_off", &MarchKnobs::cut_off, "a cone ends when less than this is open", Unit::none, between(0, 0.5)},
         Param{"own_surface", &MarchKnobs::own_surface,
               "whether cones also see the plane they start from, as the papers' do; else its expected share is taken out"}};
