@@ -45,7 +45,8 @@ class Pool {
     Pool() { blocks_.reserve(256); }
 
   private:
-    static constexpr std::size_t most = std::size_t{256} << 20;
+    // A frame of voxel cone tracing at 1280 x 720 frees some 300 MiB.
+    static constexpr std::size_t most = std::size_t{384} << 20;
     struct Block {
         void* memory;
         std::size_t bytes;
