@@ -13,7 +13,7 @@ struct Interleaved {
     int width = 2;
     int height = 2;
     double normal_angle = 25.0;
-    double plane_distance = 2.0;
+    double plane_distance = 1.5;
 
     bool operator==(const Interleaved&) const = default;
     static constexpr auto description =
