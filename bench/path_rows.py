@@ -20,7 +20,6 @@ Picture = NDArray[np.float32]
 Render = Callable[[int], tuple[Picture, float]]  # seed -> picture, milliseconds
 SEEDS = 5
 SPP = 4
-MEAN_BOUNCES = 3.0  # of a path of all bounces, for its limit: albedo 0.5 and an open roof end most paths by then
 
 
 @dataclasses.dataclass(frozen=True)
@@ -38,8 +37,8 @@ def rows(calibration: Calibration, sponza: Sponza | None) -> list[Row]:
         names = ("path tracing, one bounce", "path tracing, all bounces")
         return [*found, *(absent(f"{name}: Sponza", "3x sooner than the peer, per sample in time", "Sponza is not here") for name in names)]
     scene = as_peers_render_it(sponza.scene)
-    found += _sponza_rows("path tracing, one bounce", scene, calibration, 1, 350, 1.0)
-    found += _sponza_rows("path tracing, all bounces", scene, calibration, None, 900, MEAN_BOUNCES)
+    found += _sponza_rows("path tracing, one bounce", scene, calibration, 1, 350)
+    found += _sponza_rows("path tracing, all bounces", scene, calibration, None, 900)
     return [*found, _cycles_row(scene)]
 
 
@@ -49,7 +48,8 @@ def _cornell_rows() -> list[Row]:
     return [_against_mitsuba(name, scene, size, 1, 16, 2.0, None)[0]]
 
 
-def _sponza_rows(name: str, scene: ir.Scene, calibration: Calibration, bounces: int | None, bound: float, mean_bounces: float) -> list[Row]:
+def _sponza_rows(name: str, scene: ir.Scene, calibration: Calibration, bounces: int | None, bound: float) -> list[Row]:
+    mean_bounces = bounces_of_paths(scene, bounces)
     limit = limits.path_sample(calibration, SIZE[0] * SIZE[1], mean_bounces)
     scale = limit / limits.path_sample(TARGETS_MACHINE, SIZE[0] * SIZE[1], mean_bounces)
     equal, ours = _against_mitsuba(f"{name}: equal error", scene, SIZE, bounces, SPP, 3.0, limit)
@@ -88,6 +88,12 @@ def equal_error(name: str, ours: Measured, theirs: Measured, peer: str, times: f
         note=note,
         details=details,
     )
+
+
+def bounces_of_paths(scene: ir.Scene, bounces: int | None) -> float:
+    """How many rays a path has after its primary one, in the mean: absorption, the open roof and roulette end it early."""
+    counts = ir.methods.PathTracing(spp=1, bounces=bounces).render(scene, size=SIZE).profile.stages["path_trace"].counts
+    return counts["rays"] / counts["paths"] - 1
 
 
 def renderer(scene: ir.Scene, size: tuple[int, int], bounces: int | None, spp: int) -> Render:
