@@ -183,7 +183,8 @@ double multiply_add_rate(int repeats) {
     const int tasks = 16 * oneapi::tbb::this_task_arena::max_concurrency();
     const double best = fastest(
         repeats, [&] { oneapi::tbb::parallel_for(0, tasks, [&](int) { sink = HWY_DYNAMIC_DISPATCH(multiply_add)(steps); }); });
-    return 2.0 * 12 * steps * tasks * (vector_bytes() / 4) / best * 1e-6;
+    const int lanes = vector_bytes() / 4;
+    return 2.0 * 12 * steps * tasks * lanes / best * 1e-6;
 }
 
 double cone_step_rate(int repeats) {
