@@ -32,8 +32,9 @@ struct Shaded {
 HWY_INLINE void fill_rays(const CameraRays& rays, int x0, int y0, RayPacket& packet_rays, Shaded& s) {
     alignas(64) FloatLanes column, row;
     for (int k = 0; k < packet; ++k) {
-        column[k] = static_cast<float>(k % 4);
-        row[k] = static_cast<float>(k / 4);
+        const int x = k % 4, y = k / 4;
+        column[k] = static_cast<float>(x);
+        row[k] = static_cast<float>(y);
     }
     const Tag d;
     for (int k = 0; k < packet; k += static_cast<int>(hn::Lanes(d))) {
@@ -181,9 +182,9 @@ HWY_INLINE void store_packet(const GBufferJob& job, const Tile& tile, int x0, in
 /// A packet between two steps. Several are on their way at once: each step asks the memory for what the next one reads.
 struct Slot {
     RayPacket rays;
-    Faces faces;
     Shaded s;
     std::uint32_t active, plain;
+    Faces faces;
 };
 
 HWY_INLINE void trace_rays(const GBufferJob& job, const Tile& tile, int x0, int y0, Slot& slot) {

@@ -45,8 +45,9 @@ std::vector<Ray> pixel_rays() {
     for (int y0 = 0; y0 < side; y0 += 4)
         for (int x0 = 0; x0 < side; x0 += 4)
             for (int k = 0; k < 16; ++k) {
-                const float x = (static_cast<float>(x0 + k % 4) + 0.5f) * 2 / side - 1;
-                const float y = (static_cast<float>(y0 + k / 4) + 0.5f) * 2 / side - 1;
+                const int column = x0 + k % 4, row = y0 + k / 4;
+                const float x = (static_cast<float>(column) + 0.5f) * 2 / side - 1;
+                const float y = (static_cast<float>(row) + 0.5f) * 2 / side - 1;
                 rays.push_back({vec3(0), 0, glm::normalize(vec3(x, y, -1)), 4});
             }
     return rays;

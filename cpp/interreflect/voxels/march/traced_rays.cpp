@@ -46,9 +46,9 @@ struct Tracer {
             intersector.nearest_incoherent(rays, hits);
     }
     std::vector<float> phase_weights() const {
-        std::vector<float> weights;
+        std::vector<float> weights(static_cast<std::size_t>(block.phases()));
         for (int phase = 0; phase < block.phases(); ++phase)
-            weights.push_back(static_cast<float>(samples_of(phase)) / static_cast<float>(technique.samples));
+            weights[phase] = static_cast<float>(samples_of(phase)) / static_cast<float>(technique.samples);
         return weights;
     }
 };
