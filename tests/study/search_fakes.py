@@ -43,3 +43,19 @@ class TunablePrepared(FakePrepared):
         error = (0.5 if method.flag else 1.0) / method.effort * (1 + 0.01 * seed)
         pixels = size[0] * size[1] / 1e4
         return frame(direct, indirect * np.float32(1 + 4 * error), (method.effort + method.waste) * pixels)
+
+
+MOODS = iter(10 ** np.random.default_rng(3).normal(0, 0.04, 10_000))
+
+
+class Moody(Tunable):
+    """Each of its preparations renders quicker or slower than the last, by a tenth or so."""
+
+    def prepare(self, scene, threads=None):
+        return MoodyPrepared(self, scene, precompute_milliseconds=float(next(MOODS)))
+
+
+class MoodyPrepared(TunablePrepared):
+    def render(self, camera=None, size=None, seed=0, threads=None):
+        seen = super().render(camera, size, seed, threads)
+        return frame(seen.direct, seen.indirect, seen.profile.milliseconds * self.precompute_milliseconds)

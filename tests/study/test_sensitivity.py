@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from search_fakes import Tunable
+from search_fakes import Moody, Tunable
 from study_fakes import Scene
 
 from interreflect.study.reference import Reference
@@ -51,3 +51,11 @@ def test_variance_is_shared_among_the_knobs_that_matter(found):
 def test_the_chart_has_a_bar_for_every_knob(found):
     figure = found.chart()
     assert figure.axes[0].get_yticklabels()[0].get_text() == "effort"
+
+
+def test_what_differs_from_preparation_to_preparation_is_noise(tmp_path, fake_truth):
+    found = sensitivity(Moody(), Scene(), size=(24, 16), samples=0, reference=Reference(1e-6, 65536), folder=tmp_path / "a")
+    rows = found.indices.set_index("knob")
+    assert found.noise["time"] == pytest.approx(0.04, rel=0.5)  # sixteen pairs
+    assert rows.loc["idle", "time_effect"] > 0.03
+    assert found.idle == ["idle"]

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 LEVELS = 4  # of Morris's grid
 LEAST_EFFECT = 0.02  # decades over a knob's whole range: 5 %, what no picture or frame rate shows
-NOISE_SEEDS = 4  # renders of one setting that tell what changes without any knob
+NOISE_SETTINGS = 16  # measured once more, prepared anew, to tell what changes without any knob
 MOST_SHARED = 6  # knobs that variance is shared among: each costs as many renders as the base sample
 
 
@@ -91,8 +91,7 @@ def sensitivity(
         raise ValueError(f"sensitivity: {type(method).__name__} has no plain knob to vary")
     folder = study_folder("sensitivity", scene, name, size, method.name) if folder is None else Path(folder)
     bench = _Bench(method, scene, name, size, reference or Reference(noise=3e-3), folder)
-    noise = bench.noise()
-    indices = _morris(bench, axes, trajectories, noise, seed)
+    indices, noise = _morris(bench, axes, trajectories, seed)
     if samples:
         strong = indices.assign(most=indices[["error_effect", "time_effect"]].max(axis=1)).sort_values("most", ascending=False)
         shared = [str(knob) for knob in strong.loc[strong["matters"] != "", "knob"].head(MOST_SHARED)]
@@ -107,18 +106,17 @@ class _Bench:
         self.method, self.folder, self.failed = method, folder, 0
         self.base: dict[str, Any] = {"scenes": [scene], "cameras": [camera], "size": size, "reference": reference, "images": False}
 
-    def noise(self) -> dict[str, float]:
-        """Standard deviations between renders of one setting with different seeds."""
-        study = Study(name="noise", methods=[self.method], seeds=range(NOISE_SEEDS), repeats=2, max_repeats=2, **self.base)
-        (group,) = measured(study, self.folder)
-        spread = np.std([self._logarithms(record) for record in group], axis=0, ddof=1)
+    def noise(self, axes: Sequence[Axis], places: Numbers, values: Numbers) -> dict[str, float]:
+        """Standard deviations of measurements of one setting, from settings measured before that are prepared and measured again."""
+        again = values[:NOISE_SETTINGS] - self.measure(axes, places[:NOISE_SETTINGS], seed=1)
+        spread = np.sqrt(np.nanmean(again**2, axis=0) / 2)
         return {"error": float(spread[0]), "time": float(spread[1])}
 
-    def measure(self, axes: Sequence[Axis], places: Numbers) -> Numbers:
+    def measure(self, axes: Sequence[Axis], places: Numbers, seed: int = 0) -> Numbers:
         """(settings, 2): of each row of places in [0, 1]; NaN for what failed."""
         methods = [self.method.replace({axis.path: axis.at(place) for axis, place in zip(axes, row, strict=True)}) for row in places]
         different = {same(made): made for made in methods}
-        study = Study(name="sensitivity", methods=list(different.values()), repeats=2, max_repeats=2, **self.base)
+        study = Study(name="sensitivity", methods=list(different.values()), seeds=[seed], repeats=2, max_repeats=2, **self.base)
         found = {key: self._logarithms(group[0]) for key, group in zip(different, measured(study, self.folder), strict=True)}
         return np.array([found[same(made)] for made in methods])
 
@@ -130,7 +128,8 @@ class _Bench:
         return float(np.log10(error)), float(np.log10(record.milliseconds))
 
 
-def _morris(bench: _Bench, axes: Sequence[Axis], trajectories: int, noise: Mapping[str, float], seed: int) -> pd.DataFrame:
+def _morris(bench: _Bench, axes: Sequence[Axis], trajectories: int, seed: int) -> tuple[pd.DataFrame, dict[str, float]]:
+    """Morris's effects, and the noise that they stand out of where they matter."""
     import pandas as pd
 
     try:
@@ -153,10 +152,11 @@ def _morris(bench: _Bench, axes: Sequence[Axis], trajectories: int, noise: Mappi
             found = analysis.analyze(problem, places[whole], values[whole, column], num_levels=LEVELS, seed=seed)
         rows[f"{quantity}_effect"], rows[f"{quantity}_conf"] = found["mu_star"], found["mu_star_conf"]
         rows[f"{quantity}_spread"] = found["sigma"]
+    noise = bench.noise(axes, places[whole], values[whole])
     step = LEVELS / (2 * (LEVELS - 1))  # of a trajectory, in ranges
     least = {q: max(LEAST_EFFECT, 2 * np.sqrt(2 / np.pi) * np.sqrt(2) * noise[q] / step) for q in ("error", "time")}  # twice that of noise
     rows["matters"] = [", ".join(q for q in least if row[f"{q}_effect"] > least[q]) for _, row in rows.iterrows()]
-    return rows
+    return rows, noise
 
 
 def _sobol(bench: _Bench, axes: Sequence[Axis], samples: int, seed: int) -> pd.DataFrame:
