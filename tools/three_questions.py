@@ -88,6 +88,8 @@ class Questions:
 
 
 def shown(table: pd.DataFrame, knobs: Sequence[str]) -> str:
+    if table.empty:
+        return "none"
     varied = [name for name in knobs if name in table and table[name].nunique() > 1]
     columns = [name for name in ("method", "milliseconds", "relmse", "note", *varied) if name in table]
     return table[columns].to_string(index=False, na_rep="", float_format=lambda number: f"{number:.4g}")

@@ -60,19 +60,22 @@ def configurations(records: Records) -> pd.DataFrame:
         times[index] += record.every_time
     added |= _interval("milliseconds", [median_interval(group) for group in times])
     found = found.drop(columns=list(added), errors="ignore")  # a record's own interval gives way to that of all its seeds
-    return pd.concat([found, pd.DataFrame(added, index=found.index)], axis=1).reset_index()
+    joined = pd.concat([found, pd.DataFrame(added, index=found.index)], axis=1)
+    return joined.copy().reset_index()  # the copy is one piece: to many, columns are added slowly and with a warning
 
 
 def _with_sums(table: pd.DataFrame) -> pd.DataFrame:
     """Bytes and work counts of all stages together."""
+    import pandas as pd
+
     stages = [column.split(".", 2) for column in table.columns if column.startswith("stage.")]
     sums: dict[str, list[str]] = {}
     for parts in stages:
         if len(parts) == 3 and parts[2] != "milliseconds":
             sums.setdefault("bytes" if parts[2] == "bytes" else WORK + parts[2], []).append(".".join(parts))
-    added = {name: table[columns].astype(float).sum(axis=1) for name, columns in sums.items()}
-    memory = [record.peak_memory_bytes for record in table["record"]]
-    return table.assign(**({"bytes": np.nan} | added), peak_memory_bytes=memory)
+    added: dict[str, Any] = {"bytes": np.nan}
+    added |= {name: table[columns].astype(float).sum(axis=1) for name, columns in sums.items()}
+    return pd.concat([table, pd.DataFrame(added, index=table.index)], axis=1)
 
 
 def _mean_intervals(values: pd.DataFrame, group: pd.Series[int]) -> npt.NDArray[np.float64]:
