@@ -141,7 +141,8 @@ def test_denoised_path_tracing_is_charged_with_its_noise_and_the_denoisers_bias(
     pytest.importorskip("pyoidn")
     found = box(ir.methods.PathTracingDenoised(), 64)
     shares = {stage.stage: stage for stage in found.stages if stage.status in (REPLACED, MORE_SAMPLES)}
-    assert [shares[name].counterpart for name in ("path_trace", "denoise")] == ["path-tracing-denoised spp=64", "path-tracing spp=1"]
+    assert shares["path_trace"].counterpart == "path-tracing-denoised spp=64"
+    assert shares["denoise"].counterpart == "path-tracing spp=1, pattern=8"
     assert all(share.error > 0.05 for share in shares.values())
     # Without both it is unbiased path tracing, which has nothing but noise.
     assert found.rest == pytest.approx(0, abs=0.05)
@@ -154,3 +155,14 @@ def test_what_sharing_is_charged_with_does_not_depend_on_the_counterparts_rays(b
     # Where rays take the cones' place, sharing them makes more noise than the method itself has error: 1.5 of it for 16 rays.
     assert few.low <= many.error <= few.high
     assert few.error < 0.4 and many.error < 0.4
+
+
+def test_without_denoising_the_same_paths_are_left():
+    pytest.importorskip("pyoidn")
+    method, scene = ir.methods.PathTracingDenoised(spp=2, bounces=1), ir.scenes.cornell_box()
+    denoised = method.render(scene, size=SIZE, seed=3)
+    plain = method.exactly(["denoise"], 128)
+    assert isinstance(plain, ir.methods.PathTracing) and plain.spp == 2
+    traced = plain.render(scene, size=SIZE, seed=3)
+    paths = [frame.profile.stages["path_trace"].counts for frame in (denoised, traced)]
+    assert paths[0] == paths[1]  # rays depend on every random number

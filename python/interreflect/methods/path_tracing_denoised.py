@@ -17,6 +17,8 @@ from interreflect.methods.prepared import View
 from interreflect.profile import Profile
 from interreflect.stages import core_camera
 
+# As PathTracing.pattern. 4 has 1.1 to 1.5 times the error; 16 traces a fifth longer for 0 (atrium) to 14 % (Cornell box) less.
+_PATTERN = 8
 _LEAST_REFLECTANCE = 0.05  # below it, dividing by the reflectance would turn rounding into light
 
 
@@ -42,7 +44,7 @@ class PathTracingDenoised(Method):
     def exactly(self, stages: Collection[str], samples: int) -> Method:
         """Exact denoising is none, at full size."""
         spp = max(self.spp, samples) if "path_trace" in stages else self.spp
-        return PathTracing(spp=spp, bounces=self.bounces) if "denoise" in stages else self.replace(spp=spp)
+        return PathTracing(spp=spp, bounces=self.bounces, pattern=_PATTERN) if "denoise" in stages else self.replace(spp=spp)
 
     def compose(self, view: View, profile: Profile) -> tuple[Image, Image]:
         width, height = view.size
@@ -66,7 +68,8 @@ class PathTracingDenoised(Method):
         return certain + direct_rest, rest - direct_rest
 
     def _trace(self, view: View, size: tuple[int, int], samples: int) -> _core.PathTraced:
-        return _core.path_trace(view.scene.core, core_camera(view.camera), *size, samples=samples, bounces=self.bounces, seed=view.seed)
+        camera = core_camera(view.camera)
+        return _core.path_trace(view.scene.core, camera, *size, samples=samples, bounces=self.bounces, pattern=_PATTERN, seed=view.seed)
 
 
 def _reflectance(gbuffer: _core.GBuffer) -> Image:
