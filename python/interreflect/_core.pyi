@@ -686,10 +686,10 @@ class OctantCoverage:
     description: ClassVar[dict[str, Any]]
     stages: ClassVar[tuple[str, ...]]
 
-    def __init__(self) -> None:
+    def __init__(self, *, levels: int=...) -> None:
         ...
 
-    def replace(self) -> OctantCoverage:
+    def replace(self, *, levels: int=...) -> OctantCoverage:
         ...
 
     def asdict(self) -> dict[str, Any]:
@@ -699,16 +699,20 @@ class OctantCoverage:
         ...
 
     def __eq__(self, other: object) -> bool:
+        ...
+
+    @property
+    def levels(self) -> int:
         ...
 class Anisotropic:
     """Six faces, each composited front to back along its direction, then averaged."""
     description: ClassVar[dict[str, Any]]
     stages: ClassVar[tuple[str, ...]]
 
-    def __init__(self) -> None:
+    def __init__(self, *, levels: int=...) -> None:
         ...
 
-    def replace(self) -> Anisotropic:
+    def replace(self, *, levels: int=...) -> Anisotropic:
         ...
 
     def asdict(self) -> dict[str, Any]:
@@ -718,16 +722,20 @@ class Anisotropic:
         ...
 
     def __eq__(self, other: object) -> bool:
+        ...
+
+    @property
+    def levels(self) -> int:
         ...
 class SurfaceCoverage:
     """Opacity is a quarter of the sum of the eight below it, clamped; radiance keeps their mean colour."""
     description: ClassVar[dict[str, Any]]
     stages: ClassVar[tuple[str, ...]]
 
-    def __init__(self) -> None:
+    def __init__(self, *, levels: int=..., kernel: str=..., format: str=...) -> None:
         ...
 
-    def replace(self) -> SurfaceCoverage:
+    def replace(self, *, levels: int=..., kernel: str=..., format: str=...) -> SurfaceCoverage:
         ...
 
     def asdict(self) -> dict[str, Any]:
@@ -737,16 +745,28 @@ class SurfaceCoverage:
         ...
 
     def __eq__(self, other: object) -> bool:
+        ...
+
+    @property
+    def levels(self) -> int:
+        ...
+
+    @property
+    def kernel(self) -> str:
+        ...
+
+    @property
+    def format(self) -> str:
         ...
 class VolumeCoverage:
     """A texel is the mean of the eight below it."""
     description: ClassVar[dict[str, Any]]
     stages: ClassVar[tuple[str, ...]]
 
-    def __init__(self) -> None:
+    def __init__(self, *, levels: int=..., kernel: str=..., format: str=...) -> None:
         ...
 
-    def replace(self) -> VolumeCoverage:
+    def replace(self, *, levels: int=..., kernel: str=..., format: str=...) -> VolumeCoverage:
         ...
 
     def asdict(self) -> dict[str, Any]:
@@ -756,6 +776,18 @@ class VolumeCoverage:
         ...
 
     def __eq__(self, other: object) -> bool:
+        ...
+
+    @property
+    def levels(self) -> int:
+        ...
+
+    @property
+    def kernel(self) -> str:
+        ...
+
+    @property
+    def format(self) -> str:
         ...
 class GatheredLight:
     """

@@ -76,6 +76,14 @@ HWY_INLINE V premultiplied(const float* radiance, float opacity, float inverse_s
     return hn::Mul(hn::Load(d, rgba), hn::Set(d, opacity));
 }
 
+/// What a channel of eight bits would hold: a multiple of 1/255 in [0, 1].
+HWY_INLINE V eight_bits(V value) {
+    const D d;
+    const V whole = hn::Set(d, 255.0f);
+    const V clipped = hn::Min(hn::Max(value, hn::Zero(d)), hn::Set(d, 1.0f));
+    return hn::Mul(hn::Round(hn::Mul(clipped, whole)), hn::Set(d, 1.0f / 255.0f));
+}
+
 /// A voxel, and its copies in the border.
 HWY_INLINE void write_voxel(const LevelView& level, int x, int y, int z, V value) {
     store(value, level.texels + at(level, x, y, z));
@@ -87,16 +95,20 @@ HWY_INLINE void write_voxel(const LevelView& level, int x, int y, int z, V value
                 store(value, level.texels + at(level, bx, by, bz));
 }
 
-/// Slices 2 z and 2 z + 1 of the finest level (with the border next to them): cleared, then written.
-inline void write_slices(const LevelView& finest, const VoxelView& voxels, int z) {
+/// Slices 2 z and 2 z + 1 of the finest level (with the border next to them): cleared, then written; in `bytes`, radiance is
+/// clipped at 1 before opacity scales it.
+inline void write_slices(const LevelView& finest, const VoxelView& voxels, int z, bool bytes) {
     const int first = z == 0 ? -1 : 2 * z, last = 2 * z + 2 >= finest.nz ? finest.nz : 2 * z + 1;
     __builtin_memset(finest.texels + static_cast<std::size_t>(first + 1) * finest.slice, 0,
                      static_cast<std::size_t>(last - first + 1) * finest.slice * sizeof(std::uint16_t));
     for (std::size_t i = voxels.begin; i < voxels.end; ++i) {
         const auto cell = static_cast<int>(voxels.cell[i]);
         const int line = cell / finest.nx;
-        write_voxel(finest, cell % finest.nx, line % finest.ny, line / finest.ny,
-                    premultiplied(voxels.radiance + 3 * i, voxels.opacity[i], voxels.inverse_scale));
+        const float *radiance = voxels.radiance + 3 * i, opacity = voxels.opacity[i];
+        const V value =
+            bytes ? eight_bits(hn::Mul(hn::Min(premultiplied(radiance, 1.0f, 1.0f), hn::Set(D(), 1.0f)), hn::Set(D(), opacity)))
+                  : premultiplied(radiance, opacity, voxels.inverse_scale);
+        write_voxel(finest, cell % finest.nx, line % finest.ny, line / finest.ny, value);
     }
 }
 

@@ -4,11 +4,16 @@
 
 #include "data/voxel_grid.h"
 #include "math/parallel.h"
+#include "voxels/prefilter/filter_knobs.h"
 
 namespace interreflect {
 
 /// How eight texels become one.
 enum class Coverage { volume, surface };
+struct IsotropicFilter {
+    Coverage coverage;
+    bool tent, eight_bits;
+};
 
 /// A level as plain numbers, in halves: kernels of several targets share no functions.
 struct LevelView {
@@ -25,8 +30,8 @@ struct VoxelView {
     float inverse_scale;
 };
 
-/// The pyramid's empty levels: memory not yet written.
-Pyramid make_levels(const Domain& domain, int faces);
+/// The pyramid's empty levels, at most as many as the knobs say: memory not yet written.
+Pyramid make_levels(const Domain& domain, int faces, const LevelKnobs& knobs);
 
 /// The power of two that brings the largest radiance just below 2^15; 1 where there is none. Throws std::invalid_argument where a
 /// radiance is not finite.
@@ -65,12 +70,12 @@ void reduce_coarse(Pyramid& pyramid, const Reduce& reduce) {
 }
 
 /// Every level of one face: the finest one cleared and written from the voxels, each other one reduced from the one below it.
-Pyramid build_isotropic(Coverage coverage, const LitVoxels& lit);
+Pyramid build_isotropic(Coverage coverage, const IsotropicKnobs& knobs, const LitVoxels& lit);
 
 /// Six faces from the second level on.
-Pyramid build_anisotropic(const LitVoxels& lit);
+Pyramid build_anisotropic(const LevelKnobs& knobs, const LitVoxels& lit);
 
 /// Eight octants of directions at every level.
-Pyramid build_octants(const LitVoxels& lit);
+Pyramid build_octants(const LevelKnobs& knobs, const LitVoxels& lit);
 
 }  // namespace interreflect

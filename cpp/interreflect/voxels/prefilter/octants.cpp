@@ -161,7 +161,7 @@ void write_slices_octants(const LevelView& finest, const VoxelView& voxels, int 
     for (std::size_t octant = 0; octant < 8; ++octant) {
         LevelView cleared = finest;
         cleared.texels += octant * finest.volume;
-        write_slices(cleared, none, z);
+        write_slices(cleared, none, z, false);
     }
     for (std::size_t i = voxels.begin; i < voxels.end; ++i) {
         const std::uint32_t cell = voxels.cell[i], line = cell / static_cast<std::uint32_t>(finest.nx);
@@ -188,8 +188,8 @@ HWY_EXPORT(reduce_slice_octants);
 HWY_EXPORT(write_slices_octants);
 }  // namespace
 
-Pyramid build_octants(const LitVoxels& lit) {
-    Pyramid pyramid = make_levels(lit.grid->domain, 8);
+Pyramid build_octants(const LevelKnobs& knobs, const LitVoxels& lit) {
+    Pyramid pyramid = make_levels(lit.grid->domain, 8, knobs);
     pyramid.scale = radiance_scale(lit);
     const VoxelView voxels = view(lit, pyramid.scale);
     const LevelView finest = view(pyramid.levels[0]);

@@ -4,9 +4,9 @@
 
 namespace interreflect {
 
-Pyramid prefilter(const VolumeCoverage&, const LitVoxels& lit) { return build_isotropic(Coverage::volume, lit); }
-Pyramid prefilter(const SurfaceCoverage&, const LitVoxels& lit) { return build_isotropic(Coverage::surface, lit); }
-Pyramid prefilter(const Anisotropic&, const LitVoxels& lit) { return build_anisotropic(lit); }
-Pyramid prefilter(const OctantCoverage&, const LitVoxels& lit) { return build_octants(lit); }
+Pyramid prefilter(const VolumeCoverage& t, const LitVoxels& lit) { return build_isotropic(Coverage::volume, t, lit); }
+Pyramid prefilter(const SurfaceCoverage& t, const LitVoxels& lit) { return build_isotropic(Coverage::surface, t, lit); }
+Pyramid prefilter(const Anisotropic& t, const LitVoxels& lit) { return build_anisotropic(t, lit); }
+Pyramid prefilter(const OctantCoverage& t, const LitVoxels& lit) { return build_octants(t, lit); }
 
 }  // namespace interreflect

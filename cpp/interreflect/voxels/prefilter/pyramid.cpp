@@ -14,7 +14,7 @@ const float* floats(const Buffer<vec3>& vectors) { return reinterpret_cast<const
 
 }  // namespace
 
-Pyramid make_levels(const Domain& domain, int faces) {
+Pyramid make_levels(const Domain& domain, int faces, const LevelKnobs& knobs) {
     Pyramid pyramid;
     pyramid.domain = domain;
     pyramid.faces = faces;
@@ -24,7 +24,7 @@ Pyramid make_levels(const Domain& domain, int faces) {
         level.faces = pyramid.levels.empty() && faces == 6 ? 1 : faces;
         level.texels = Buffer<std::uint16_t>(level.volume() * static_cast<std::size_t>(level.faces) * 4);
         pyramid.levels.push_back(std::move(level));
-        if (size == ivec3(1)) return pyramid;
+        if (size == ivec3(1) || static_cast<int>(pyramid.levels.size()) == knobs.levels) return pyramid;
     }
 }
 

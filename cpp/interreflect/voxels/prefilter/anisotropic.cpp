@@ -1,6 +1,6 @@
 // Compiled once for every vector width; the widest that the machine has is chosen at run time.
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "voxels/prefilter/levels.cpp"
+#define HWY_TARGET_INCLUDE "voxels/prefilter/anisotropic.cpp"
 #include <hwy/foreach_target.h>
 // After foreach_target.h:
 #include <hwy/highway.h>
@@ -11,31 +11,6 @@ HWY_BEFORE_NAMESPACE();
 namespace interreflect {
 namespace HWY_NAMESPACE {
 namespace {
-/// Volume coverage: the mean. Surface coverage: a quarter of the sum, brought back to opacity 1 where it is more. Premultiplied
-/// radiance follows opacity, so its colour is the children's mean weighted by opacity.
-HWY_INLINE V reduce(V sum, bool surface) {
-    const D d;
-    const V scale = surface ? hn::Min(hn::Set(d, 0.25f), hn::Div(hn::Set(d, 1.0f), hn::Max(alpha_of(sum), hn::Set(d, 1e-6f))))
-                            : hn::Set(d, 0.125f);
-    return hn::Mul(sum, scale);
-}
-
-void reduce_slice(const LevelView& fine, const LevelView& coarse, int z, bool surface) {
-    const D d;
-    for (int y = 0; y < coarse.ny; ++y) {
-        std::uint16_t* out = coarse.texels + at(coarse, 0, y, z);
-        for (int x = 0; x < coarse.nx; ++x, out += 4) {
-            V sum = hn::Zero(d);
-            if (!all_air(fine, x, y, z)) {
-                const Children c = children(fine, x, y, z);
-                for (const auto* texel : c.texel) sum = hn::Add(sum, load(texel));
-                sum = reduce(sum, surface);
-            }
-            store(sum, out);
-        }
-    }
-}
-
 void reduce_slice_faces(const LevelView& fine, const LevelView& coarse, int z) {
     const D d;
     for (int face = 0; face < 6; ++face) {
@@ -109,34 +84,13 @@ HWY_AFTER_NAMESPACE();
 
 namespace interreflect {
 namespace {
-HWY_EXPORT(reduce_slice);
 HWY_EXPORT(reduce_slice_faces);
 HWY_EXPORT(write_slices);
 HWY_EXPORT(first_faces_slice);
-
 }  // namespace
 
-Pyramid build_isotropic(Coverage coverage, const LitVoxels& lit) {
-    Pyramid pyramid = make_levels(lit.grid->domain, 1);
-    pyramid.scale = radiance_scale(lit);
-    const VoxelView voxels = view(lit, pyramid.scale);
-    const bool surface = coverage == Coverage::surface;
-    const LevelView finest = view(pyramid.levels[0]);
-    const int pairs = (finest.nz + 1) / 2;
-    parallel_pieces(static_cast<std::size_t>(pairs), [&](std::size_t piece) {
-        const int z = static_cast<int>(piece);
-        HWY_DYNAMIC_DISPATCH(write_slices)(finest, slices_of(voxels, pyramid.domain, z), z);
-        if (pyramid.levels.size() > 1) HWY_DYNAMIC_DISPATCH(reduce_slice)(finest, view(pyramid.levels[1]), z, surface);
-    });
-    reduce_coarse(pyramid, [&](const LevelView& fine, const LevelView& coarse, int z) {
-        HWY_DYNAMIC_DISPATCH(reduce_slice)(fine, coarse, z, surface);
-    });
-    pyramid.counts.voxels = lit.grid->size();
-    return pyramid;
-}
-
-Pyramid build_anisotropic(const LitVoxels& lit) {
-    Pyramid pyramid = make_levels(lit.grid->domain, 6);
+Pyramid build_anisotropic(const LevelKnobs& knobs, const LitVoxels& lit) {
+    Pyramid pyramid = make_levels(lit.grid->domain, 6, knobs);
     pyramid.scale = radiance_scale(lit);
     const VoxelView voxels = view(lit, pyramid.scale);
     const LevelView finest = view(pyramid.levels[0]);
@@ -144,7 +98,7 @@ Pyramid build_anisotropic(const LitVoxels& lit) {
     parallel_pieces(static_cast<std::size_t>((finest.nz + 1) / 2), [&](std::size_t piece) {
         const int z = static_cast<int>(piece);
         const VoxelView inside = slices_of(voxels, pyramid.domain, z);
-        HWY_DYNAMIC_DISPATCH(write_slices)(finest, inside, z);
+        HWY_DYNAMIC_DISPATCH(write_slices)(finest, inside, z, false);
         if (pyramid.levels.size() == 1) return;
         std::vector<std::uint32_t> number(per_pair, 0);
         HWY_DYNAMIC_DISPATCH(first_faces_slice)(finest, view(pyramid.levels[1]), inside, z, number.data());
