@@ -87,6 +87,13 @@ def exposed_faces(cells: NDArray[np.integer]) -> tuple[NDArray[np.intp], NDArray
     return owners, axes, sides
 
 
+def cell_diagonals(domain: _core.Domain, cells: NDArray[np.integer]) -> Floats:
+    """(n,): distance between opposite corners of cells (n, 3), scene units."""
+    lower, upper = _to_world(domain, cells, 1), _to_world(domain, cells + 1, 1)
+    length: Floats = np.linalg.norm(upper - lower, axis=1)
+    return length
+
+
 def _cubes(voxels: Any, camera: Camera, level: int) -> tuple[_core.Domain, Ints, Floats, int]:
     """The domain, cells (n, 3), colours (n, 3), and the width of a cell in voxels of the domain."""
     if isinstance(voxels, _core.VoxelGrid):
@@ -103,7 +110,7 @@ def _cubes(voxels: Any, camera: Camera, level: int) -> tuple[_core.Domain, Ints,
 def _facing_radiance(lit: _core.LitVoxels, camera: Camera) -> Floats:
     """Of the side that looks at the camera; of the front where the back was not lit apart."""
     if len(lit.back) == 0:
-        return lit.radiance
+        return np.asarray(lit.radiance)
     towards = np.asarray(camera.position, np.float32) - lit.voxels.position
     is_back = np.einsum("ij,ij->i", towards, lit.voxels.normal) < 0
     facing: Floats = np.where(is_back[:, None], lit.back, lit.radiance)

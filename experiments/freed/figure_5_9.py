@@ -1,0 +1,25 @@
+"""Figure 5.9: The perspective warp has a noticeable effect."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from matplotlib.figure import Figure
+
+import interreflect as ir
+from experiments.freed.pipeline import compared, freed
+from experiments.shared.panels import as_light, panels, picture
+from experiments.shared.scenes import glossy_sponza
+
+NAMES = ("without warp", "perspective warp", "without warp, 128^3")
+
+
+def studies() -> Sequence[ir.Study]:
+    ways = [freed(), freed(grid__warp=ir.Perspective()), freed(grid__resolution=128)]
+    return [compared("perspective warp", ways, glossy_sponza())]
+
+
+def chart(records: ir.Records) -> Figure:
+    truth = records.truth(records[0])[0]
+    shown = [(name, as_light(picture(records, i), truth)) for i, name in enumerate(NAMES)]
+    return panels([*shown, ("truth", as_light(truth, truth))])

@@ -1,0 +1,85 @@
+"""A method whose picture is the voxels themselves, and whose counts say where they differ from the surface."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+import interreflect as ir
+from interreflect import _core
+from interreflect.cubes import VoxelView, cell_diagonals, voxel_view
+from interreflect.frame import Image
+from interreflect.methods.knobs import knob, stage
+from interreflect.methods.method import Method, method
+from interreflect.methods.prepared import View
+from interreflect.profile import Profile
+from interreflect.stages import light_voxels, place, prefilter, trace_gbuffer, voxelize
+
+# A ray that passes the surface by more than two diagonals of the voxels there went between voxels: a voxel that the surface touches
+# has its far corner within one diagonal of it, and one more allows for rays that leave the first layer through a step of it.
+PASSED = 2.0
+
+
+@method
+class VoxelPicture(Method):
+    """Voxels as shaded cubes. Counts of the stage `compare`: `voxels`; `exact`, those that `ExactOverlap` finds; `missing` and `extra`
+    against it; `seen` pixels that show a surface and `cracked` ones of these, through which one looks past it between the voxels; `lit`
+    voxels with radiance.
+
+    light_voxels=None shows albedo; prefilter=None the voxels themselves, else a level of their pyramid.
+    """
+
+    grid: _core.Grid = _core.Grid(resolution=256)
+    voxelize: Any = stage(default=_core.SurfaceSampling())
+    light_voxels: Any = stage(default=None, optional=True)
+    prefilter: Any = stage(default=None, optional=True)
+    level: int = knob(default=0, doc="level of the pyramid that is shown", minimum=0, maximum=10)
+    exact: bool = knob(default=True, doc="whether voxels are compared with those that the surface touches")
+
+    bounces: ClassVar[int | None] = 0
+
+    def compose(self, view: View, profile: Profile) -> tuple[Image, Image]:
+        scene, camera, size = view.scene, view.camera, view.size
+        domain = place(self.grid, scene, camera)
+        with profile.stage("voxelize") as note:
+            voxels = note(voxelize(self.voxelize, scene, domain))
+        shown: Any = voxels
+        if self.light_voxels is not None or self.prefilter is not None:
+            with profile.stage("light_voxels") as note:
+                shown = note(light_voxels(self.light_voxels or _core.TracedLighting(), scene, voxels, view.seed))
+                note.counts["lit"] = int(shown.radiance.any(1).sum())
+        if self.prefilter is not None:
+            with profile.stage("prefilter") as note:
+                shown = note(prefilter(self.prefilter, shown))
+        with profile.stage("view"):
+            drawn = voxel_view(shown, camera, size, level=self.level)
+        if self.exact:
+            with profile.stage("compare") as note:
+                note.counts.update(compare(scene, voxels, drawn, view))
+        return drawn.image, np.zeros_like(drawn.image)
+
+
+def compare(scene: ir.Scene, voxels: Any, drawn: VoxelView, view: View) -> dict[str, int]:
+    """How voxels differ from those that the surface touches, and how far one sees through them."""
+    truth = voxelize(_core.ExactOverlap(), scene, voxels.domain)
+    exact = voxel_view(truth, view.camera, view.size)
+    depth = trace_gbuffer(scene, view.camera, view.size).depth
+    seen = np.isfinite(depth) & (exact.cell[..., 0] >= 0)
+    size = np.full(depth.shape, np.inf)
+    size[seen] = cell_diagonals(voxels.domain, exact.cell[seen])
+    return {
+        "voxels": len(voxels),
+        "exact": len(truth),
+        "missing": len(np.setdiff1d(truth.cell, voxels.cell)),
+        "extra": len(np.setdiff1d(voxels.cell, truth.cell)),
+        "faces": drawn.faces,
+        "seen": int(seen.sum()),
+        "cracked": int(cracks(depth, drawn.depth, size)[seen].sum()),
+    }
+
+
+def cracks(surface: NDArray[np.floating], voxels: NDArray[np.floating], diagonal: NDArray[np.floating]) -> NDArray[np.bool_]:
+    """Pixels whose ray passes the surface by more than `PASSED` diagonals of the voxels there. All (height, width); depths along rays."""
+    return np.asarray(np.where(np.isfinite(surface), surface, np.inf) + PASSED * diagonal < voxels)
