@@ -33,35 +33,96 @@ Domain make_domain(Float3 lower, float voxel_size, Int3 cells) {
     return {vector3(lower), voxel_size, {cells[0], cells[1], cells[2]}};
 }
 
+/// Maps (n, 3) points one by one.
+template <class Map>
+py::array_t<float> map_points(const py::array_t<float, py::array::c_style | py::array::forcecast>& points, const Map& map) {
+    if (points.ndim() != 2 || points.shape(1) != 3) throw py::value_error("points must have the shape (n, 3)");
+    py::array_t<float> mapped({points.shape(0), py::ssize_t{3}});
+    const auto* in = reinterpret_cast<const vec3*>(points.data());
+    auto* out = reinterpret_cast<vec3*>(mapped.mutable_data());
+    for (py::ssize_t i = 0; i < points.shape(0); ++i) out[i] = map(in[i]);
+    return mapped;
+}
+
+int checked_cascade(const Domain& domain, int cascade) {
+    if (cascade < 0 || cascade >= domain.cascades)
+        throw py::index_error("cascade must lie in [0, " + std::to_string(domain.cascades) + "), got " + std::to_string(cascade));
+    return cascade;
+}
+
+void bind_maps(py::class_<Domain>& cls) {
+    cls.def(
+           "to_voxels",
+           [](const Domain& d, const py::array_t<float, py::array::c_style | py::array::forcecast>& points) {
+               return map_points(points, [&](const vec3& p) { return d.to_voxels(p); });
+           },
+           py::arg("points"),
+           "(n, 3) voxel coordinates of (n, 3) points in world space: cells are their integer parts. Of nested grids, those in "
+           "the "
+           "finest that holds the point.")
+        .def(
+            "to_world",
+            [](const Domain& d, const py::array_t<float, py::array::c_style | py::array::forcecast>& voxels, int cascade) {
+                checked_cascade(d, cascade);
+                return map_points(voxels, [&](const vec3& q) { return d.to_world(VoxelPlace{cascade, q}); });
+            },
+            py::arg("voxels"), py::arg("cascade") = 0, "(n, 3) points in world space of (n, 3) voxel coordinates in one grid.")
+        .def(
+            "density",
+            [](const Domain& d, const py::array_t<float, py::array::c_style | py::array::forcecast>& points) {
+                if (points.ndim() != 2 || points.shape(1) != 3) throw py::value_error("points must have the shape (n, 3)");
+                py::array_t<float> densities({points.shape(0), py::ssize_t{3}, py::ssize_t{3}});
+                const auto* in = reinterpret_cast<const vec3*>(points.data());
+                auto* out = reinterpret_cast<mat3*>(densities.mutable_data());
+                for (py::ssize_t i = 0; i < points.shape(0); ++i)
+                    out[i] = glm::transpose(d.density(d.to_linear(in[i]))) * (1.0f / d.voxel_size);
+                return densities;
+            },
+            py::arg("points"),
+            "(n, 3, 3): voxels a unit of world space at (n, 3) points; row i, column j: of voxel axis i along world axis j.");
+}
+
 void bind_domain(py::module_& m) {
-    py::class_<Domain>(m, "Domain", "A box of cubic voxels in world space.")
-        .def(py::init(&make_domain), py::kw_only(), py::arg("lower"), py::arg("voxel_size"), py::arg("cells"))
+    py::class_<Domain> domain(m, "Domain", "A box of voxels in world space: evenly spread, warped, or nested grids.");
+    domain
+        .def(py::init(&make_domain), py::kw_only(), py::arg("lower"), py::arg("voxel_size"), py::arg("cells"),
+             "Cubic voxels, evenly spread.")
         .def_property_readonly(
-            "lower", [](const Domain& d) { return bindings::array3(d.lower); }, "Lower corner, world space.")
+            "lower", [](const Domain& d) { return bindings::array3(d.lower); },
+            "Lower corner, world space; of a view volume, the eye.")
         .def_property_readonly(
             "upper", [](const Domain& d) { return bindings::array3(d.upper()); }, "Upper corner, world space.")
-        .def_readonly("voxel_size", &Domain::voxel_size, "Edge of a voxel, world space.")
+        .def_readonly("voxel_size", &Domain::voxel_size, "Edge of a voxel of the finest grid before it is warped, world space.")
         .def_property_readonly(
-            "cells", [](const Domain& d) { return array3(d.cells); }, "Voxels along x, y, z.")
+            "cells", [](const Domain& d) { return array3(d.cells); }, "Voxels along x, y, z of each grid.")
+        .def_readonly("cascades", &Domain::cascades, "How many nested grids.")
+        .def_property_readonly("plain", &Domain::plain, "Whether voxels are cubes of one size.")
         .def("__eq__", [](const Domain& a, const py::object& b) { return py::isinstance<Domain>(b) && a == b.cast<Domain>(); })
         .def("__repr__", [](const Domain& d) {
-            return "Domain(lower=" + py::repr(py::cast(bindings::array3(d.lower))).cast<std::string>() +
-                   ", voxel_size=" + py::repr(py::float_(d.voxel_size)).cast<std::string>() +
-                   ", cells=" + py::repr(py::cast(array3(d.cells))).cast<std::string>() + ")";
+            std::string text = "Domain(lower=" + py::repr(py::cast(bindings::array3(d.lower))).cast<std::string>() +
+                               ", voxel_size=" + py::repr(py::float_(d.voxel_size)).cast<std::string>() +
+                               ", cells=" + py::repr(py::cast(array3(d.cells))).cast<std::string>();
+            if (d.cascades > 1) text += ", cascades=" + std::to_string(d.cascades);
+            if (d.warp.kind != Warp::Kind::linear) text += ", warped";
+            return text + ")";
         });
+    bind_maps(domain);
+    bind_stage(m, "warp", "How are a grid's voxels spread over space?", false, static_cast<WarpTechnique*>(nullptr));
+    bind_stage(m, "region", "Which part of space do the voxels cover?", false, static_cast<Region*>(nullptr));
     const py::object grid = bind_technique<Grid>(m);
     grid.attr("place") = py::cpp_function(
-        [](const py::object& self, const py::object& scene, const py::object& camera) {
-            return py::module_::import("interreflect.stages").attr("place")(self, scene, camera);
+        [](const py::object& self, const py::object& scene, const py::object& camera, const py::object& size) {
+            return py::module_::import("interreflect.stages").attr("place")(self, scene, camera, size);
         },
-        py::name("place"), py::is_method(grid), py::arg("scene"), py::arg("camera") = py::none(),
-        "The domain of this grid over a Scene's bounds: `interreflect.stages.place`.");
+        py::name("place"), py::is_method(grid), py::arg("scene"), py::arg("camera") = py::none(), py::arg("size") = py::none(),
+        "The domain of this grid in a Scene: `interreflect.stages.place`.");
     m.def(
         "place",
-        [](const Grid& grid, const BoundScene& scene, const Camera* camera) {
-            return run([&] { return place(grid, scene.scene, camera); });
+        [](const Grid& technique, const BoundScene& scene, const Camera* camera, float aspect) {
+            return run([&] { return place(technique, scene.scene, camera, aspect); });
         },
-        py::arg("grid"), py::arg("scene"), py::arg("camera") = py::none(), "The domain of a grid over the scene's bounds.");
+        py::arg("grid"), py::arg("scene"), py::arg("camera") = py::none(), py::arg("aspect") = 1.0f,
+        "The domain of a grid in a scene, for a picture `aspect` times as wide as high.");
 }
 
 /// A read-only property that shows one of a value's arrays, (n, 3) or (n,), without a copy.

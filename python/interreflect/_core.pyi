@@ -414,28 +414,57 @@ class PathTraced:
         """
 class Domain:
     """
-    A box of cubic voxels in world space.
+    A box of voxels in world space: evenly spread, warped, or nested grids.
     """
 
     def __eq__(self, arg0: typing.Any) -> bool:
         ...
 
     def __init__(self, *, lower: typing.Annotated[collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], 'FixedSize(3)'], voxel_size: typing.SupportsFloat | typing.SupportsIndex, cells: typing.Annotated[collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex], 'FixedSize(3)']) -> None:
-        ...
+        """
+        Cubic voxels, evenly spread.
+        """
 
     def __repr__(self) -> str:
         ...
 
+    def density(self, points: typing.Annotated[numpy.typing.ArrayLike, numpy.float32]) -> numpy.typing.NDArray[numpy.float32]:
+        """
+        (n, 3, 3): voxels a unit of world space at (n, 3) points; row i, column j: of voxel axis i along world axis j.
+        """
+
+    def to_voxels(self, points: typing.Annotated[numpy.typing.ArrayLike, numpy.float32]) -> numpy.typing.NDArray[numpy.float32]:
+        """
+        (n, 3) voxel coordinates of (n, 3) points in world space: cells are their integer parts. Of nested grids, those in the finest that holds the point.
+        """
+
+    def to_world(self, voxels: typing.Annotated[numpy.typing.ArrayLike, numpy.float32], cascade: typing.SupportsInt | typing.SupportsIndex=0) -> numpy.typing.NDArray[numpy.float32]:
+        """
+        (n, 3) points in world space of (n, 3) voxel coordinates in one grid.
+        """
+
+    @property
+    def cascades(self) -> int:
+        """
+        How many nested grids.
+        """
+
     @property
     def cells(self) -> typing.Annotated[list[int], 'FixedSize(3)']:
         """
-        Voxels along x, y, z.
+        Voxels along x, y, z of each grid.
         """
 
     @property
     def lower(self) -> typing.Annotated[list[float], 'FixedSize(3)']:
         """
-        Lower corner, world space.
+        Lower corner, world space; of a view volume, the eye.
+        """
+
+    @property
+    def plain(self) -> bool:
+        """
+        Whether voxels are cubes of one size.
         """
 
     @property
@@ -447,17 +476,241 @@ class Domain:
     @property
     def voxel_size(self) -> float:
         """
-        Edge of a voxel, world space.
+        Edge of a voxel of the finest grid before it is warped, world space.
         """
-class Grid:
-    """Cubic voxels over the scene's bounds, half a voxel of air around them."""
+class Spherical:
+    """The view volume in azimuth, elevation and logarithm of the distance: curved frustum voxels."""
     description: ClassVar[dict[str, Any]]
     stages: ClassVar[tuple[str, ...]]
 
-    def __init__(self, *, resolution: int=...) -> None:
+    def __init__(self, *, near: float=..., far: float=..., widening: float=..., snap: bool=...) -> None:
         ...
 
-    def replace(self, *, resolution: int=...) -> Grid:
+    def replace(self, *, near: float=..., far: float=..., widening: float=..., snap: bool=...) -> Spherical:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+
+    @property
+    def near(self) -> float:
+        ...
+
+    @property
+    def far(self) -> float:
+        ...
+
+    @property
+    def widening(self) -> float:
+        ...
+
+    @property
+    def snap(self) -> bool:
+        ...
+class Perspective:
+    """The view frustum as the picture's projection maps it onto the grid."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self, *, near: float=..., far: float=..., widening: float=..., linear_depth: bool=...) -> None:
+        ...
+
+    def replace(self, *, near: float=..., far: float=..., widening: float=..., linear_depth: bool=...) -> Perspective:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+
+    @property
+    def near(self) -> float:
+        ...
+
+    @property
+    def far(self) -> float:
+        ...
+
+    @property
+    def widening(self) -> float:
+        ...
+
+    @property
+    def linear_depth(self) -> bool:
+        ...
+class CubicSpline:
+    """Along each axis a cubic about the camera whose slope at the region's ends is `alpha`."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self, *, alpha: float=...) -> None:
+        ...
+
+    def replace(self, *, alpha: float=...) -> CubicSpline:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+
+    @property
+    def alpha(self) -> float:
+        ...
+class Logistic:
+    """Along each axis a logistic curve about the camera, which leaves few voxels for the region's ends."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self, *, steepness: float=...) -> None:
+        ...
+
+    def replace(self, *, steepness: float=...) -> Logistic:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+
+    @property
+    def steepness(self) -> float:
+        ...
+class Linear:
+    """Voxels of one size everywhere."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self) -> None:
+        ...
+
+    def replace(self) -> Linear:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+class AroundCamera:
+    """A cube about the camera, which moves with it in steps."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self, *, width: float=..., step: int=...) -> None:
+        ...
+
+    def replace(self, *, width: float=..., step: int=...) -> AroundCamera:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+
+    @property
+    def width(self) -> float:
+        ...
+
+    @property
+    def step(self) -> int:
+        ...
+class Box:
+    """A given box in world space; what lies outside of it is not voxelized."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self, *, lower_x: float=..., lower_y: float=..., lower_z: float=..., upper_x: float=..., upper_y: float=..., upper_z: float=...) -> None:
+        ...
+
+    def replace(self, *, lower_x: float=..., lower_y: float=..., lower_z: float=..., upper_x: float=..., upper_y: float=..., upper_z: float=...) -> Box:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+
+    @property
+    def lower_x(self) -> float:
+        ...
+
+    @property
+    def lower_y(self) -> float:
+        ...
+
+    @property
+    def lower_z(self) -> float:
+        ...
+
+    @property
+    def upper_x(self) -> float:
+        ...
+
+    @property
+    def upper_y(self) -> float:
+        ...
+
+    @property
+    def upper_z(self) -> float:
+        ...
+class SceneBounds:
+    """The scene's bounds with half a voxel of air around them."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self) -> None:
+        ...
+
+    def replace(self) -> SceneBounds:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+class Grid:
+    """Where voxels stand, how many, and how they are spread."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self, *, resolution: int=..., warp: Any=..., cascades: int=..., region: Any=...) -> None:
+        ...
+
+    def replace(self, *, resolution: int=..., warp: Any=..., cascades: int=..., region: Any=...) -> Grid:
         ...
 
     def asdict(self) -> dict[str, Any]:
@@ -471,6 +724,18 @@ class Grid:
 
     @property
     def resolution(self) -> int:
+        ...
+
+    @property
+    def warp(self) -> Any:
+        ...
+
+    @property
+    def cascades(self) -> int:
+        ...
+
+    @property
+    def region(self) -> Any:
         ...
 class VoxelGrid:
     """
@@ -1070,9 +1335,9 @@ def path_trace(scene: Scene, camera: Camera, width: typing.SupportsInt | typing.
     """
     Path tracing with exactly `bounces` indirect bounces (None: all); `samples` paths a pixel, fewer where `milliseconds` end sooner.
     """
-def place(grid: Grid, scene: Scene, camera: Camera | None=None) -> Domain:
+def place(grid: Grid, scene: Scene, camera: Camera | None=None, aspect: typing.SupportsFloat | typing.SupportsIndex=1.0) -> Domain:
     """
-    The domain of a grid over the scene's bounds.
+    The domain of a grid in a scene, for a picture `aspect` times as wide as high.
     """
 def prefilter(technique: VolumeCoverage | SurfaceCoverage | Anisotropic | OctantCoverage, lit: LitVoxels) -> Pyramid:
     """

@@ -49,10 +49,16 @@ def sky(technique: Any, scene: Scene, gbuffer: _core.GBuffer, seed: int = 0, gat
     return _core.sky(technique, scene.core, gbuffer, seed)
 
 
-def place(grid: _core.Grid, scene: Scene, camera: Camera | str | None = None) -> _core.Domain:
-    """The domain of a grid: cubic voxels over the scene's bounds. Some warps need the camera."""
+def place(
+    grid: _core.Grid, scene: Scene, camera: Camera | str | None = None, size: tuple[int, int] | None = None
+) -> _core.Domain:
+    """The domain of a grid. Warps, cascades and some regions need the camera (None: the scene's first), view volumes the picture's
+    size too (None: the camera's). ValueError for a box without extent, far not beyond near, cascades with a warp."""
     view = camera_of(scene, camera) if camera is not None or scene.cameras else None
-    return _core.place(grid, scene.core, None if view is None else core_camera(view))
+    if view is None:
+        return _core.place(grid, scene.core)
+    width, height = view.size if size is None else checked_size(size)
+    return _core.place(grid, scene.core, core_camera(view), width / height)
 
 
 def voxelize(technique: Any, scene: Scene, domain: _core.Domain) -> _core.VoxelGrid:

@@ -254,7 +254,9 @@ def test_grid_places_cubic_voxels_over_any_aspect():
     assert ir.Grid(resolution=33).place(scene) == domain
     with pytest.raises(ValueError, match=r"Grid\.resolution must lie in \[2, 1024\] voxels, got 1"):
         ir.Grid(resolution=1)
-    assert eval(repr(ir.Grid(resolution=7)), {"Grid": ir.Grid}) == ir.Grid(resolution=7)
+    assert eval(repr(ir.Grid(resolution=7)), {name: getattr(ir, name) for name in ("Grid", "Linear", "SceneBounds")}) == ir.Grid(
+        resolution=7
+    )
 
 
 def test_domains_refuse_what_is_not_a_box_of_voxels():

@@ -7,30 +7,10 @@
 
 #include "data/buffer.h"
 #include "data/counts.h"
+#include "data/domain.h"
 #include "math/vectors.h"
 
 namespace interreflect {
-
-using glm::ivec3;
-
-/// A box of cubic voxels: voxel (x, y, z) covers lower + voxel_size * [x, x + 1] x [y, y + 1] x [z, z + 1], world space.
-struct Domain {
-    vec3 lower{0};
-    float voxel_size = 1.0f;
-    ivec3 cells{1};
-
-    std::size_t cell_count() const { return static_cast<std::size_t>(cells.x) * cells.y * cells.z; }
-    /// World space to voxels: [0, cells] inside the domain, voxel centres at + 0.5.
-    vec3 to_voxels(const vec3& position) const { return (position - lower) * (1.0f / voxel_size); }
-    vec3 to_world(const vec3& voxels) const { return lower + voxels * voxel_size; }
-    vec3 upper() const { return to_world(vec3(cells)); }
-    std::uint32_t cell(const ivec3& at) const { return static_cast<std::uint32_t>(at.x + cells.x * (at.y + cells.y * at.z)); }
-    ivec3 coordinates(std::uint32_t cell) const {
-        const auto row = static_cast<int>(cell / static_cast<std::uint32_t>(cells.x));
-        return {static_cast<int>(cell % static_cast<std::uint32_t>(cells.x)), row % cells.y, row / cells.y};
-    }
-    bool operator==(const Domain&) const = default;
-};
 
 /// A point of a voxel's surface where the light of one of its sides is gathered: it lies on a triangle, so rays leave it as they
 /// leave a hit.
@@ -44,7 +24,7 @@ struct VoxelPoint {
 /// The voxels that the surface passes through, in ascending order of their cell, in parallel arrays.
 struct VoxelGrid {
     Domain domain;
-    Buffer<std::uint32_t> cell;  // x + cells.x (y + cells.y z)
+    Buffer<std::uint32_t> cell;  // as Domain::cell numbers them
     Buffer<vec3> albedo;         // mean diffuse reflectance of the solid samples
     Buffer<vec3> normal;         // mean of the front sides' normals: unit, or (0, 0, 0) where they cancel
     Buffer<vec3> emission;       // mean radiance leaving the front side; apart from `albedo` and never marched by default
@@ -73,7 +53,9 @@ struct LitVoxels {
 /// Radiance and opacity, halved in size from level to level down to one texel.
 ///
 /// Level i has ceil(cells / 2^i) texels along each axis, down to 1 x 1 x 1; its texel (x, y, z) covers voxels
-/// 2^i * [(x, y, z), (x, y, z) + 1] of the finest level (what lies beyond the domain there is air).
+/// 2^i * [(x, y, z), (x, y, z) + 1] of the finest level (what lies beyond the domain there is air). Of n nested grids the first n
+/// levels have as many texels as one grid has cells: level i is grid i, filled from level i - 1 where that lies inside it; the
+/// levels after them halve in size as before. Texel (0, 0, 0) of level i stands where `origin` says, in its own texels.
 ///
 /// A texel is four half floats R G B A, 8 bytes: A in [0, 1] is the opacity over the texel's own width, RGB the radiance
 /// premultiplied by A and divided by `scale`. Every level has a border of one texel on all sides that repeats the nearest inner
@@ -88,7 +70,7 @@ struct LitVoxels {
 /// eight it reads number (d.x > 0) + 2 (d.y > 0) + 4 (d.z > 0); their opacities agree. The finest level has one or eight.
 struct Pyramid {
     struct Level {
-        ivec3 size{0};
+        ivec3 size{0}, origin{0};
         int faces = 1;
         Buffer<std::uint16_t> texels;
 

@@ -37,7 +37,7 @@ class VoxelConeTracing(Method):
         with profile.stage("gbuffer") as note:
             gbuffer = note(trace_gbuffer(scene, view.camera, view.size))
         with profile.stage("voxelize") as note:
-            voxels = note(voxelize(self.voxelize, scene, place(self.grid, scene, view.camera)))
+            voxels = note(voxelize(self.voxelize, scene, place(self.grid, scene, view.camera, view.size)))
         with profile.stage("light_voxels") as note:
             lit = note(light_voxels(self.light_voxels, scene, voxels, seed))
         with profile.stage("prefilter") as note:

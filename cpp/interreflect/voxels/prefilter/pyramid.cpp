@@ -15,6 +15,7 @@ const float* floats(const Buffer<vec3>& vectors) { return reinterpret_cast<const
 }  // namespace
 
 Pyramid make_levels(const Domain& domain, int faces, const LevelKnobs& knobs) {
+    if (domain.cascades > 1) throw std::invalid_argument("prefilter: nested grids cannot be filtered so far");
     Pyramid pyramid;
     pyramid.domain = domain;
     pyramid.faces = faces;

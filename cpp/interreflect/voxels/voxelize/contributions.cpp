@@ -6,57 +6,10 @@
 #include <span>
 
 #include "math/parallel.h"
-#include "visibility/surface.h"
+#include "voxels/voxelize/triangle_pieces.h"
 
 namespace interreflect {
 namespace {
-
-constexpr std::uint32_t triangles_of_piece = 2048;
-
-/// Triangles [begin, end) of one instance.
-struct TrianglePiece {
-    std::uint32_t instance, begin, end;
-};
-std::vector<TrianglePiece> triangle_pieces(const Geometry& geometry) {
-    std::vector<TrianglePiece> pieces;
-    for (std::uint32_t i = 0; i < geometry.instances.size(); ++i) {
-        const Group& group = geometry.groups[geometry.instances[i].group];
-        const std::uint32_t end = group.first_triangle + group.triangle_count;
-        for (std::uint32_t t = group.first_triangle; t < end; t += triangles_of_piece)
-            pieces.push_back({i, t, std::min(t + triangles_of_piece, end)});
-    }
-    return pieces;
-}
-
-/// False for a triangle without area, or outside the domain.
-bool make_voxel_triangle(const Scene& scene, const Domain& domain, std::uint32_t instance, std::uint32_t triangle,
-                         VoxelTriangle& made) {
-    const Corners world = world_corners(*scene.geometry, instance, triangle);
-    made.corner[0] = domain.to_voxels(world.a);
-    made.corner[1] = domain.to_voxels(world.b);
-    made.corner[2] = domain.to_voxels(world.c);
-    const vec3 lower = glm::min(glm::min(made.corner[0], made.corner[1]), made.corner[2]);
-    const vec3 upper = glm::max(glm::max(made.corner[0], made.corner[1]), made.corner[2]);
-    const vec3 cells(domain.cells);
-    if (glm::any(glm::lessThan(upper, vec3(0))) || glm::any(glm::greaterThan(lower, cells))) return false;
-    made.crosses = glm::any(glm::lessThan(lower, vec3(0))) || glm::any(glm::greaterThan(upper, cells));
-    const vec3 cross = glm::cross(made.corner[1] - made.corner[0], made.corner[2] - made.corner[0]);
-    const float length = glm::length(cross);
-    if (!(length > 0.0f)) return false;
-    made.normal = cross * (1.0f / (scene.geometry->instances[instance].flips ? -length : length));
-    made.area = 0.5f * length;
-    made.offset = self_hit_offset(world.a, world.b, world.c);
-    const auto& arrays = *scene.geometry->arrays;
-    const uvec3 t = arrays.triangles[triangle];
-    const Material& material = scene.materials[arrays.materials[triangle]];
-    made.material = &material;
-    made.albedo_map = material.albedo_map >= 0 ? scene.textures[material.albedo_map].get() : nullptr;
-    made.emission_map = material.emission_map >= 0 && material.emits() ? scene.textures[material.emission_map].get() : nullptr;
-    made.mask = material.mask >= 0 ? scene.masks[material.mask].get() : nullptr;
-    if (!made.uniform())
-        for (int i = 0; i < 3; ++i) made.texcoord[i] = arrays.texcoords[t[i]];
-    return true;
-}
 
 /// Ranges of cells that are merged at a time: 16,384 cells' voxels stay in a core's own cache.
 struct Buckets {
@@ -135,7 +88,7 @@ struct Voxel {
 };
 
 VoxelPoint point_of(const Contribution& part, const vec3& centre, const Domain& domain) {
-    return {domain.to_world(centre + part.position / part.area), part.offset, part.normal, 1};
+    return {domain.from_linear(centre + part.position / part.area), part.offset, part.normal, 1};
 }
 
 /// Front and back of a voxel: its largest part; and the largest that faces away, or, where that is but a sliver, the front's own
@@ -154,11 +107,11 @@ void write_points(const Voxel& voxel, const vec3& centre, std::size_t i, VoxelGr
 void write_voxel(const Voxel& voxel, std::uint32_t cell, std::size_t i, VoxelGrid& grid) {
     const Domain& domain = grid.domain;
     const float share = 1.0f / voxel.area;
-    const vec3 centre = vec3(domain.coordinates(cell)) + 0.5f;
+    const vec3 centre = domain.linear_centre(cell);
     grid.cell[i] = cell;
     grid.albedo[i] = voxel.albedo * share;
     grid.emission[i] = voxel.emission * share;
-    grid.position[i] = domain.to_world(centre + voxel.position * share);
+    grid.position[i] = domain.from_linear(centre + voxel.position * share);
     grid.opacity[i] = voxel.total > voxel.area ? voxel.area / voxel.total : 1.0f;
     // Opposite sides that cancel leave rounding only: 1e-3 of the area is no direction.
     const float length = glm::length(voxel.normal);
@@ -213,15 +166,6 @@ void merge_bucket(std::size_t bucket, const Buckets& buckets, const CellMarks& m
 
 }  // namespace
 
-int VoxelTriangle::level(const Texture& texture, float sample_area) const {
-    const vec2 du = texcoord[1] - texcoord[0], dv = texcoord[2] - texcoord[0];
-    const float share = 0.5f * std::fabs(du.x * dv.y - du.y * dv.x) * sample_area / area;
-    const float texels = share * static_cast<float>(texture.width()) * static_cast<float>(texture.height());
-    if (!(texels >= 2.0f)) return 0;
-    // Nearest level: round(log2(texels) / 2).
-    return std::min((std::ilogb(texels) + 1) / 2, texture.levels() - 1);
-}
-
 void CellMarks::number() {
     std::uint32_t sum = 0;
     for (std::size_t i = 0; i < words_.size(); ++i) {
@@ -231,23 +175,22 @@ void CellMarks::number() {
     first_.back() = sum;
 }
 
-VoxelGrid voxelize_triangles(const Scene& scene, const Domain& domain, const EmitTriangle& emit) {
-    const auto triangles = triangle_pieces(*scene.geometry);
+VoxelGrid voxelize_triangles(const Scene& scene, const Domain& domain, Handing handing, const EmitTriangle& emit) {
+    const auto ranges = triangle_ranges(*scene.geometry);
     const Buckets buckets(domain.cell_count());
     CellMarks marks(domain.cell_count());
-    Pieces pieces{std::vector<Sorted<Contribution>>(triangles.size()),
-                  std::vector<Sorted<EmissionContribution>>(triangles.size())};
-    oneapi::tbb::enumerable_thread_specific<Worker> workers([&] { return Worker{ContributionSink(domain, marks), {}, {}, 0}; });
-    parallel_pieces(triangles.size(), [&](std::size_t i) {
+    Pieces pieces{std::vector<Sorted<Contribution>>(ranges.size()), std::vector<Sorted<EmissionContribution>>(ranges.size())};
+    oneapi::tbb::enumerable_thread_specific<Worker> workers([&] {
+        return Worker{ContributionSink(domain, handing, marks), {}, {}, 0};
+    });
+    parallel_pieces(ranges.size(), [&](std::size_t i) {
         Worker& worker = workers.local();
         worker.sink.clear();
-        VoxelTriangle triangle;
-        for (std::uint32_t t = triangles[i].begin; t < triangles[i].end; ++t) {
-            if (!make_voxel_triangle(scene, domain, triangles[i].instance, t, triangle)) continue;
+        for_each_triangle(scene, domain, handing, ranges[i], [&](const VoxelTriangle& triangle) {
             worker.sink.begin(triangle);
             emit(triangle, worker.sink);
             worker.sink.end();
-        }
+        });
         pieces.surface[i] = worker.surface.keep(worker.sink.surface, buckets);
         pieces.emission[i] = worker.emission.keep(worker.sink.emission, buckets);
         worker.samples += worker.sink.samples;

@@ -133,7 +133,7 @@ void overlap_triangle(const VoxelTriangle& t, const ivec3& cells, int samples, C
 }  // namespace
 
 VoxelGrid voxelize(const ExactOverlap& technique, const Scene& scene, const Domain& domain) {
-    return voxelize_triangles(scene, domain, [&](const VoxelTriangle& triangle, ContributionSink& sink) {
+    return voxelize_triangles(scene, domain, Handing::pieces, [&](const VoxelTriangle& triangle, ContributionSink& sink) {
         overlap_triangle(triangle, domain.cells, technique.samples, sink);
     });
 }

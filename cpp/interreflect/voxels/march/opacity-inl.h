@@ -1,0 +1,91 @@
+// How much of a cone a step blocks. Included once for every vector target.
+#if defined(INTERREFLECT_OPACITY_KERNEL) == defined(HWY_TARGET_TOGGLE)
+#ifdef INTERREFLECT_OPACITY_KERNEL
+#undef INTERREFLECT_OPACITY_KERNEL
+#else
+#define INTERREFLECT_OPACITY_KERNEL
+#endif
+
+#include "voxels/march/march_cones.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace interreflect {
+namespace HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// Integral of the tent of the trilinear filter from -infinity to x (texels).
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V tent_integral(D d, V x) {
+    const V one = hn::Set(d, 1.0f), half = hn::Set(d, 0.5f);
+    const V t = hn::Min(hn::Max(x, hn::Set(d, -1.0f)), one);
+    const V rise = hn::Sub(one, hn::Abs(t));
+    const V tail = hn::Mul(half, hn::Mul(rise, rise));
+    return hn::IfThenElse(hn::Lt(t, hn::Zero(d)), tail, hn::Sub(one, tail));
+}
+
+/// What the receiver's own plane adds to a level's filtered opacity at a sample: its voxels are a layer `width` texels thick.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V own_opacity(D d, float inverse_size, V height, V width, V axis_plane, V axis_sample, V axis_cells, V aligned) {
+    const V scale = hn::Set(d, inverse_size), half = hn::Set(d, 0.5f), one = hn::Set(d, 1.0f), zero = hn::Zero(d);
+    const V h = hn::Mul(height, scale), reach = hn::Mul(width, half);
+    const V mean = hn::Sub(tent_integral(d, hn::Add(h, reach)), tent_integral(d, hn::Sub(h, reach)));
+    const V centre = hn::Add(hn::Floor(hn::Mul(axis_plane, scale)), half);
+    // The border repeats the outermost texels: beyond their centres nothing changes.
+    const V last = hn::Sub(hn::Ceil(hn::Mul(axis_cells, scale)), half);
+    const V sample = hn::Min(hn::Max(hn::Mul(axis_sample, scale), half), last);
+    const V known = hn::Max(hn::Sub(one, hn::Abs(hn::Sub(sample, centre))), zero);
+    return hn::IfThenElse(hn::Gt(aligned, zero), known, mean);
+}
+
+/// Horner's rule, highest power first.
+template <class D, class V = hn::Vec<D>, std::size_t n>
+HWY_INLINE V polynomial(D d, V x, const float (&coefficients)[n]) {
+    V sum = hn::Set(d, coefficients[0]);
+    for (std::size_t i = 1; i < n; ++i) sum = hn::MulAdd(sum, x, hn::Set(d, coefficients[i]));
+    return sum;
+}
+
+/// x^exponent, x in [0, 1], within 1e-6 times the exponent: opacities are half floats. Exactly 1 at 1, and 0 from 1e-12 down.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V power(D d, V x, float exponent) {
+    const hn::RebindToSigned<D> di;
+    // Chebyshev fits: log2(1 + t) / t for 1 + t in [sqrt(1/2), sqrt(2)], and 2^t for t in [-1/2, 1/2].
+    static constexpr float log2_over_t[] = {0.172128703f, -0.269506265f, 0.295633603f, -0.359350654f,
+                                            0.480629147f, -0.72136404f,  1.44269643f};
+    static constexpr float exp2_of_t[] = {0.00134004322f, 0.0096760371f, 0.0555032721f, 0.240221074f, 0.693147207f, 1.0f};
+    const auto bits = hn::BitCast(di, x);
+    const auto whole = hn::ShiftRight<23>(hn::Sub(bits, hn::Set(di, 0x3f3504f3)));  // sqrt(1/2)
+    const V t = hn::Sub(hn::BitCast(d, hn::Sub(bits, hn::ShiftLeft<23>(whole))), hn::Set(d, 1.0f));
+    const V log2 = hn::MulAdd(t, polynomial(d, t, log2_over_t), hn::ConvertTo(d, whole));
+    const V y = hn::Max(hn::Mul(log2, hn::Set(d, exponent)), hn::Set(d, -126.0f)), nearest = hn::Round(y);
+    const V mantissa = polynomial(d, hn::Sub(y, nearest), exp2_of_t);
+    const V result = hn::BitCast(d, hn::Add(hn::BitCast(di, mantissa), hn::ShiftLeft<23>(hn::ConvertTo(di, nearest))));
+    return hn::IfThenElseZero(hn::Gt(x, hn::Set(d, 1e-12f)), result);
+}
+
+/// 1 - (1 - a)^exponent.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V stretched_opacity(D d, V a, float exponent) {
+    const V one = hn::Set(d, 1.0f);
+    if (exponent == 1.0f) return a;
+    const V clear = hn::Sub(one, a);
+    if (exponent == 0.5f) return hn::Sub(one, hn::Sqrt(clear));
+    if (exponent == 2.0f) return hn::Sub(one, hn::Mul(clear, clear));
+    return hn::Sub(one, power(d, clear, exponent));
+}
+
+/// How much of the cone a step newly blocks. Independent of what blocked it before, it is the step's share of what is open; fully
+/// correlated (a wall along the cone covers the same part of it at every step), only what exceeds all that is blocked already.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V newly_blocked(D d, V open, V opacity, float correlation) {
+    const V independent = hn::Mul(open, opacity);
+    if (correlation == 0.0f) return independent;
+    const V beyond = hn::Max(hn::Sub(hn::Add(open, opacity), hn::Set(d, 1.0f)), hn::Zero(d));
+    return hn::MulAdd(hn::Sub(beyond, independent), hn::Set(d, correlation), independent);
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace interreflect
+HWY_AFTER_NAMESPACE();
+#endif

@@ -1,0 +1,84 @@
+/// The parts of triangles in cells: what voxelizations emit, and which cells they occupy.
+#pragma once
+#include <atomic>
+#include <bit>
+#include <cstdint>
+#include <vector>
+
+#include "data/scene.h"
+#include "data/voxel_grid.h"
+
+namespace interreflect {
+
+/// A triangle, or a piece of one, in units of one grid's voxels from its lower corner, with what its surface looks like.
+struct VoxelTriangle {
+    vec3 corner[3];
+    vec2 texcoord[3];
+    vec3 normal{0};        // unit, in the space of `corner`; the front side's where that is not warped
+    vec3 facing{0};        // unit, front side, world space
+    float area = 0;        // in faces of a voxel
+    float offset = 0;      // of rays that leave it, world space
+    bool crosses = false;  // the grid's border
+    int cascade = 0;       // the grid
+    vec3 linear[3];        // the corners in linear voxels, where the domain is not plain
+    const Material* material = nullptr;
+    const Texture* albedo_map = nullptr;
+    const Texture* emission_map = nullptr;
+    const Mask* mask = nullptr;
+
+    bool uniform() const { return albedo_map == nullptr && emission_map == nullptr && mask == nullptr; }
+    /// The mip level whose texels are as large as `sample_area` (faces of a voxel) of this triangle.
+    int level(const Texture& texture, float sample_area) const;
+};
+
+/// How a voxelization wants to be handed triangles where the domain is not plain.
+enum class Handing {
+    pieces,   // flat ones in warped voxels, each in one of nested grids: a sample at `corner`s' space is where it lies
+    grids,    // whole, in linear voxels, once for each of nested grids; the sink warps samples and keeps those of that grid
+    at_once,  // whole, in linear voxels of the finest grid, once; the sink warps samples and finds their grid
+};
+
+/// The part of one triangle in one cell. Sums are weighted by area.
+struct Contribution {
+    std::uint32_t cell = 0;
+    float area = 0;    // solid part, in faces of a voxel
+    float total = 0;   // with the holes of its mask
+    vec3 albedo{0};    // sum
+    vec3 position{0};  // sum, in linear voxels from the cell's centre
+    vec3 normal{0};    // unit
+    float offset = 0;  // of the triangle
+    std::uint32_t back = 0;
+};
+struct EmissionContribution {
+    std::uint32_t cell = 0;
+    vec3 emission{0};  // sum
+};
+
+/// The cells that hold something solid, marked by all threads; the marks owe nothing to their order.
+class CellMarks {
+  public:
+    explicit CellMarks(std::size_t cells) : words_((cells + 63) / 64), first_(words_.size() + 1) {}
+
+    void mark(std::uint32_t cell) {
+        const std::uint64_t bit = std::uint64_t{1} << (cell & 63U);
+        std::atomic_ref<std::uint64_t> word(words_[cell >> 6U]);
+        if ((word.load(std::memory_order_relaxed) & bit) == 0) word.fetch_or(bit, std::memory_order_relaxed);
+    }
+    /// Numbers the marked cells in ascending order.
+    void number();
+    bool marked(std::uint32_t cell) const { return ((words_[cell >> 6U] >> (cell & 63U)) & 1U) != 0; }
+    /// How many marked cells come before this one.
+    std::uint32_t before(std::uint64_t cell) const {
+        const std::size_t word = cell >> 6U;
+        if (word == words_.size()) return first_.back();
+        const std::uint64_t below = (std::uint64_t{1} << (cell & 63U)) - 1;
+        return first_[word] + static_cast<std::uint32_t>(std::popcount(words_[word] & below));
+    }
+    std::uint32_t count() const { return first_.back(); }
+
+  private:
+    std::vector<std::uint64_t> words_;
+    std::vector<std::uint32_t> first_;
+};
+
+}  // namespace interreflect

@@ -1,0 +1,47 @@
+#include "voxels/voxelize/contribution_sink.h"
+
+namespace interreflect {
+
+void ContributionSink::begin_placed() {
+    const VoxelTriangle& t = *triangle_;
+    origin_ = t.linear[0];
+    if (handing_ != Handing::pieces) return;
+    along_[0] = t.linear[1] - t.linear[0];
+    along_[1] = t.linear[2] - t.linear[0];
+    const vec3 e1 = t.corner[1] - t.corner[0], e2 = t.corner[2] - t.corner[0], normal = glm::cross(e1, e2);
+    const float scale = 1.0f / glm::dot(normal, normal);
+    to_weights_[0] = glm::cross(e2, normal) * scale;
+    to_weights_[1] = glm::cross(normal, e1) * scale;
+    linear_area_ = 0.5f * glm::length(glm::cross(along_[0], along_[1])) / t.area;
+}
+
+void ContributionSink::add_warped(const vec3& position, float area, bool solid, const vec3& albedo, const vec3& emitted) {
+    const bool one_grid = handing_ == Handing::grids;
+    const vec3 p = one_grid ? domain_.linear_in(triangle_->cascade, position) : position;
+    const VoxelPlace at = domain_.place(p);
+    if (!domain_.inside(at.voxels) || (one_grid && at.cascade != triangle_->cascade)) return;
+    const ivec3 cell(at.voxels);
+    add(domain_.cell(cell, at.cascade), cell, p - origin_, area, solid, albedo, emitted);
+}
+
+void ContributionSink::place_part(Contribution& c) const {
+    const VoxelTriangle& t = *triangle_;
+    if (handing_ != Handing::pieces) {
+        c.position += (origin_ - domain_.linear_centre(c.cell)) * c.area;
+        return;
+    }
+    const vec3 first = vec3(domain_.coordinates(c.cell)) + 0.5f - t.corner[0];
+    c.cell += domain_.cell(ivec3(0), t.cascade);
+    if (c.area > 0.0f) {
+        const vec3 q = first + c.position / c.area;
+        const vec3 p = origin_ + along_[0] * glm::dot(to_weights_[0], q) + along_[1] * glm::dot(to_weights_[1], q);
+        c.position = (p - domain_.linear_centre(c.cell)) * c.area;
+    }
+    // Areas weigh the parts of a cell against each other: as in space, not as in the warped grid.
+    c.position *= linear_area_;
+    c.albedo *= linear_area_;
+    c.area *= linear_area_;
+    c.total *= linear_area_;
+}
+
+}  // namespace interreflect

@@ -1,0 +1,21 @@
+/// The knobs of the warps that map what the camera sees onto the grid.
+#pragma once
+#include "data/technique.h"
+
+namespace interreflect {
+
+struct ViewVolume {
+    double near = 0.02;
+    double far = 1.0;
+    double widening = 1.25;
+
+    bool operator==(const ViewVolume&) const = default;
+    static constexpr auto params =
+        std::tuple{Param{"near", &ViewVolume::near, "where voxels begin before the eye", Unit::extents, above_up_to(0, 10)},
+                   Param{"far", &ViewVolume::far, "where they end", Unit::extents, above_up_to(0, 100)},
+                   Param{"widening", &ViewVolume::widening,
+                         "width of the volume as a multiple of the picture's: light from outside of it is lost", Unit::none,
+                         between(1, 20)}};
+};
+
+}  // namespace interreflect
