@@ -11,11 +11,11 @@ from experiments.freed.pipeline import drawn
 from experiments.shared.panels import as_colour, panels, picture
 from experiments.shared.voxel_picture import VoxelPicture
 
-NAMES = ("rasterized, 4 samples", "tessellated", "tessellated, levels of at most 64")
+NAMES = ("rasterized, 4 samples", "tessellated", "tessellated as printed: a vertex a voxel, levels of at most 64")
 
 
 def studies() -> Sequence[ir.Study]:
-    ways = [ir.Rasterization(samples=4), ir.Tessellation(), ir.Tessellation(max_level=64, split=False)]
+    ways = [ir.Rasterization(samples=4), ir.Tessellation(), ir.Tessellation(spacing=1.0, max_level=64, split=False)]
     return [drawn("rasterized and tessellated voxels", [VoxelPicture(voxelize=way) for way in ways])]
 
 

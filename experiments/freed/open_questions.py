@@ -11,7 +11,6 @@ import interreflect as ir
 from experiments.freed.pipeline import compared, freed
 from experiments.shared.panels import as_light, panels
 
-
 NAMES = (
     "isotropic, volume coverage",
     "isotropic, surface coverage",

@@ -108,7 +108,7 @@ def see_through(records: ir.Records) -> list[float]:
 
 
 def f4(records: ir.Records) -> list[Check]:
-    none, four, eight, full = see_through(records)
+    none, four, eight, _ = see_through(records)
     voxels = records.table["stage.compare.voxels"]
     extra = records.table["stage.compare.extra"]
     return [

@@ -9,60 +9,62 @@ from matplotlib.figure import Figure
 
 import interreflect as ir
 from experiments.shared.keep import NONE
-from experiments.shared.occlusion_picture import OcclusionPicture
-from experiments.shared.panels import as_share, panels, picture
+from interreflect.charts.style import COLOURS, add_legend, dress, new_figure
 
 STEPS = (0.25, 0.5, 1.0)
 RESOLUTION = 64
-LAYERS = 1  # one opaque layer between empty ones: what lies behind must not be seen
 
 
-def sheet(height: float, tilt: float, half: float = 1.0) -> ir.Mesh:
-    """A square about the y axis, facing up; `tilt` is how much higher it is at +x than in the middle."""
-    corners = [(-half, height - tilt, half), (half, height + tilt, half), (half, height + tilt, -half), (-half, height - tilt, -half)]
+def sheet(height: float, rise: float, half: float) -> ir.Mesh:
+    """A square about the y axis that faces up; `rise` is how much higher it is at +x than in the middle."""
+    corners = [(-half, height - rise, half), (half, height + rise, half), (half, height + rise, -half), (-half, height - rise, -half)]
     return ir.Mesh(np.array(corners, np.float32), np.array([[0, 1, 2], [0, 2, 3]]), material=ir.Material(albedo=(0.5, 0.5, 0.5)))
 
 
-def layers() -> ir.Scene:
-    """A floor below sheets one voxel thick, two voxels apart: opaque, empty, opaque. Across the picture the floor rises by three voxels, so
-    that its cones meet the layers at every part of their steps. The sky above is what must stay hidden."""
+def layer() -> ir.Scene:
+    """A floor below a layer of voxels, the sun above: opaque between empty. Across the picture the floor rises by two voxels, so that its
+    cones meet the layer at every part of their steps. A floor in the sun would have radiance 1; this one must be dark."""
     voxel = 2.0 / (RESOLUTION - 1)
-    floor = sheet(-12 * voxel, 1.5 * voxel * 2.0, 0.5)  # over the middle half, which the camera sees: +- 1.5 voxels
-    sheets = [sheet((0.25 + 2 * k) * voxel, 0.0) for k in range(LAYERS)]
     camera = ir.Camera(position=(0.0, -2 * voxel, 0.0), target=(0.0, -12 * voxel, 0.0), up=(0.0, 0.0, -1.0), fov_x=60)
-    return ir.Scene(
-        meshes=[floor, *sheets],
-        lights=[ir.EnvironmentLight(radiance=(1.0, 1.0, 1.0))],
-        cameras={"below": camera},
-        name="alternating layers",
-    )
+    sun = ir.DirectionalLight(direction=(0, -1, 0), irradiance=(2 * np.pi,) * 3)
+    meshes = [sheet(-12 * voxel, 3 * voxel, 0.5), sheet(0.25 * voxel, 0.0, 1.0)]
+    return ir.Scene(meshes=meshes, lights=[sun], cameras={"below": camera}, name="one layer")
 
 
 def studies() -> Sequence[ir.Study]:
-    """One layer; cones that are still no wider than a voxel when they meet it, so that the finest level is what they sample."""
-    cones = ir.DiffuseCones(cones=3, half_angle=2.0, normal_offset=1.5, first_diameter=1.0, level_bias=0.0, density=1.0)
+    """Cones of no width through the finest level, one straight up from every pixel: as in the papers, and with each step's opacity
+    corrected for its length."""
+    cone = ir.VoxelCones(half_angle=0.0, first_diameter=1.0, level_bias=0.0, density=1.0)
+    grid = ir.Grid(resolution=RESOLUTION)
     ways = [
-        OcclusionPicture(grid=ir.Grid(resolution=RESOLUTION), prefilter=ir.SurfaceCoverage(), march=cones.replace(step=step))
+        ir.methods.VoxelConeTracing(
+            grid=grid, prefilter=ir.SurfaceCoverage(), glossy=None, shadow=cone.replace(step=step, opacity_correction=corrected)
+        )
+        for corrected in (False, True)
         for step in STEPS
     ]
     return [
-        ir.Study(name="Rehfeld: alternating layers", scenes=[layers()], methods=ways, size=(160, 90), bounces=0, reference=NONE, repeats=0)
+        ir.Study(name="Rehfeld: one opaque layer", scenes=[layer()], methods=ways, size=(160, 90), bounces=0, reference=NONE, repeats=0)
     ]
 
 
-def openness(records: ir.Records) -> dict[float, tuple[float, float, float]]:
-    """Step -> mean, least and most of what cones leave open below the layer, over the picture. Right: 0 everywhere."""
+def openness(records: ir.Records, corrected: bool = False) -> dict[float, np.ndarray]:
+    """Step -> what the cones leave open below the layer, across the picture. Right: 0 everywhere."""
     found = {}
     for i, step in enumerate(STEPS):
-        shown = picture(records, i)[..., 0]
-        found[step] = (float(shown.mean()), float(shown.min()), float(shown.max()))
+        image, indirect = records.images(records[i + (len(STEPS) if corrected else 0)])
+        found[step] = (image - indirect).mean((0, 2))
     return found
 
 
 def chart(records: ir.Records) -> Figure:
-    told = openness(records)
-    shown = [
-        (f"step of {step:g} diameters\nopen: {mean:.1%} ({least:.1%} to {most:.1%})", as_share(picture(records, i)))
-        for i, (step, (mean, least, most)) in enumerate(told.items())
-    ]
-    return panels(shown, columns=3, title="what cones leave open below one opaque layer of voxels (right: nothing)")
+    figure = new_figure((8.0, 3.4), dark=False)
+    both = figure.subplots(1, 2, sharey=True)
+    for axes, corrected in zip(both, (False, True), strict=True):
+        for (step, opened), colour in zip(openness(records, corrected).items(), COLOURS, strict=False):
+            axes.plot(opened, color=colour, label=f"steps of {step:g} diameters")
+        axes.set(xlabel="column of the picture: the floor rises by two voxels", ylabel="open below an opaque layer (right: 0)")
+        axes.set_title("opacity corrected for the step's length" if corrected else "as in the paper", fontsize=9)
+        dress(axes, dark=False)
+    add_legend(figure, both, dark=False)
+    return figure

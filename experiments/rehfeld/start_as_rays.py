@@ -13,32 +13,40 @@ from experiments.shared.panels import table_figure
 from experiments.shared.scenes import phong_sponza
 
 ANGLES = (2.0, 5.0, 15.0)  # half, degrees
-STARTS = ("compromise", "rays", "immediate")
+STARTS = {  # name -> knobs of the cone
+    "compromise": {"start": "opening", "first_diameter": 0.75},
+    "rays": {"start": "rays", "first_diameter": 0.75},
+    "immediate": {"start": "opening", "first_diameter": 1.0},
+}
 
 
 def studies() -> Sequence[ir.Study]:
-    """Glossy cones alone, at every pixel."""
-    ways = [rehfeld(glossy=ir.GlossyCone(half_angle=angle, start=start), share=ir.EveryPixel()) for angle in ANGLES for start in STARTS]
+    """One angle for all glossy cones, one at every pixel."""
+    cone = rehfeld().glossy
+    ways = [rehfeld(glossy=cone.replace(half_angle=angle, **start)) for angle in ANGLES for start in STARTS.values()]
     return [
         ir.Study(
-            name="Rehfeld: how cones start", scenes=[phong_sponza(50)], cameras=["nave"], methods=ways, size=(320, 180), bounces=1,
-            reference=ir.Reference(noise=1e-2, max_spp=256), repeats=0,
+            name="Rehfeld: how cones start",
+            scenes=[phong_sponza(50)],
+            cameras=["nave"],
+            methods=ways,
+            size=(320, 180),
+            bounces=1,
+            reference=ir.Reference(noise=1e-2, max_spp=256),
+            repeats=0,
         )
-    ]  # fmt: skip
+    ]
 
 
 def table(records: ir.Records) -> pd.DataFrame:
-    """Steps and error of the glossy cones, a row per half angle, a column per start."""
-    return records.table.pivot_table(
-        index="glossy.half_angle", columns="glossy.start", values=["stage.glossy.cone_steps", "indirect_relmse"]
-    )
+    """Steps and error of the glossy cones: a row per half angle, a column per way to start."""
+    named = records.table.assign(start=[name for _ in ANGLES for name in STARTS])
+    found = named.pivot_table(index="glossy.half_angle", columns="start", values=["stage.glossy.cone_steps", "indirect_relmse"])
+    return found.rename(columns={"stage.glossy.cone_steps": "steps", "indirect_relmse": "error"})
 
 
 def chart(records: ir.Records) -> Figure:
     found = table(records)
-    shown = found.copy()
-    shown["stage.glossy.cone_steps"] /= 1e6
-    shown = shown.rename(columns={"stage.glossy.cone_steps": "million steps", "indirect_relmse": "relMSE"}).rename(
-        index=lambda a: f"half angle {a:g}"
-    )
-    return table_figure(shown, "cones that start with 3/4 voxel (compromise), as rays up to one voxel, and at once")
+    found["steps"] /= 1e6
+    shown = found.rename(columns={"steps": "million steps", "error": "relMSE"}).rename(index=lambda angle: f"half angle {angle:g}")
+    return table_figure(shown, "cones that start 3/4 voxel wide (compromise), as rays up to one voxel, and one voxel wide at once")

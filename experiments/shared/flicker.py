@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import dataclasses
+
 import numpy as np
 
 from interreflect.frame import Image
@@ -39,7 +41,7 @@ class Flicker(VoxelConeTracing):
         for frame in range(self.frames):
             scene, camera = motion.at(view.scene, frame)
             stages = Profile()
-            _, indirect, *kept = super().compose(View(scene, camera, view.size, view.seed, view.state, history), stages)
+            _, indirect, *kept = super().compose(dataclasses.replace(view, scene=scene, camera=camera, history=history), stages)
             history = kept[0] if kept else None
             seen = surfaces(scene, camera, view.size)
             if before is not None:

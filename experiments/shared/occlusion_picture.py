@@ -31,7 +31,7 @@ class OcclusionPicture(Method):
     def compose(self, view: View, profile: Profile) -> tuple[Image, Image]:
         gbuffer = trace_gbuffer(view.scene, view.camera, view.size)
         with profile.stage("voxelize") as note:
-            voxels = note(voxelize(self.voxelize, view.scene, place(self.grid, view.scene, view.camera)))
+            voxels = note(voxelize(self.voxelize, view.scene, place(self.grid, view.scene, view.camera, view.size)))
         pyramid = prefilter(self.prefilter, light_voxels(self.light_voxels, view.scene, voxels, view.seed))
         with profile.stage("march") as note:
             gathered = note(march(self.march, pyramid, gbuffer, view.scene, share=self.share, seed=view.seed))

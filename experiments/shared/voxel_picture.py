@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 import interreflect as ir
 from interreflect import _core
-from interreflect.cubes import VoxelView, cell_diagonals, voxel_view
+from interreflect.cubes import VoxelView, voxel_view
 from interreflect.frame import Image
 from interreflect.methods.knobs import knob, stage
 from interreflect.methods.method import Method, method
@@ -42,7 +42,7 @@ class VoxelPicture(Method):
 
     def compose(self, view: View, profile: Profile) -> tuple[Image, Image]:
         scene, camera, size = view.scene, view.camera, view.size
-        domain = place(self.grid, scene, camera)
+        domain = place(self.grid, scene, camera, size)
         with profile.stage("voxelize") as note:
             voxels = note(voxelize(self.voxelize, scene, domain))
         shown: Any = voxels
@@ -64,11 +64,13 @@ class VoxelPicture(Method):
 def compare(scene: ir.Scene, voxels: Any, drawn: VoxelView, view: View) -> dict[str, int]:
     """How voxels differ from those that the surface touches, and how far one sees through them."""
     truth = voxelize(_core.ExactOverlap(), scene, voxels.domain)
-    exact = voxel_view(truth, view.camera, view.size)
-    depth = trace_gbuffer(scene, view.camera, view.size).depth
-    seen = np.isfinite(depth) & (exact.cell[..., 0] >= 0)
+    gbuffer = trace_gbuffer(scene, view.camera, view.size)
+    position, depth = gbuffer.position.reshape(-1, 3), np.array(gbuffer.depth)
+    place = voxels.domain.to_voxels(position)
+    inside = ((place >= 0) & (place < voxels.domain.cells)).all(1).reshape(depth.shape)
+    seen = np.isfinite(depth) & inside
     size = np.full(depth.shape, np.inf)
-    size[seen] = cell_diagonals(voxels.domain, exact.cell[seen])
+    size[seen] = diagonals(voxels.domain, position[seen.ravel()])
     return {
         "voxels": len(voxels),
         "exact": len(truth),
@@ -78,6 +80,13 @@ def compare(scene: ir.Scene, voxels: Any, drawn: VoxelView, view: View) -> dict[
         "seen": int(seen.sum()),
         "cracked": int(cracks(depth, drawn.depth, size)[seen].sum()),
     }
+
+
+def diagonals(domain: _core.Domain, position: NDArray[np.floating]) -> NDArray[np.floating]:
+    """(n,): length of the longest diagonal of the voxels at (n, 3) points, scene units."""
+    across = np.linalg.inv(domain.density(position).astype(np.float64))  # columns: a voxel's edges
+    ways = np.array([[1, 1, 1], [1, 1, -1], [1, -1, 1], [-1, 1, 1]])
+    return np.asarray(np.linalg.norm(across @ ways.T, axis=1).max(1))
 
 
 def cracks(surface: NDArray[np.floating], voxels: NDArray[np.floating], diagonal: NDArray[np.floating]) -> NDArray[np.bool_]:

@@ -32,7 +32,7 @@ class WallOpacity(Method):
     bounces: ClassVar[int | None] = 0
 
     def compose(self, view: View, profile: Profile) -> tuple[Image, Image]:
-        voxels = voxelize(self.voxelize, view.scene, place(self.grid, view.scene, view.camera))
+        voxels = voxelize(self.voxelize, view.scene, place(self.grid, view.scene, view.camera, view.size))
         lit = light_voxels(self.light_voxels, view.scene, voxels, view.seed)
         with profile.stage("prefilter") as note:
             pyramid = note(prefilter(self.prefilter, lit))

@@ -19,6 +19,8 @@ Ints = NDArray[np.int32]
 
 # Where the drawing's own light comes from: it tells the three axes apart. Faces that look at it are shown as bright as they are.
 TOWARDS_LIGHT = np.array([0.36, 0.80, 0.48], np.float32)
+# Faces reach beyond their edges by this share, so that no ray slips between two of them.
+OVERLAP = np.float32(2e-4)
 # The corners of a cell's face across axis 0, 1, 2, in order around it, less the step along the axis itself.
 AROUND = np.array(
     [
@@ -52,19 +54,22 @@ def voxel_view(
     as it is stored, premultiplied by opacity: what lies dark is thin). colours: (n, 3), shown instead, a row per voxel of the grid.
     size: (width, height), None: the camera's. Cells of a warped grid are drawn with straight edges between their corners.
 
-    TypeError for other values, IndexError for a level that a pyramid lacks, ValueError for colours of another number.
+    TypeError for other values, IndexError for a level that a pyramid lacks, ValueError for colours of another number and for the
+    pyramid of nested grids.
     """
-    domain, cells, shown, width = _cubes(voxels, camera, level)
+    cubes, shown = _cubes(voxels, camera, level)
     if colours is not None:
         shown = np.asarray(colours, np.float32)
-        if shown.shape != (len(cells), 3):
-            raise ValueError(f"colours must have the shape ({len(cells)}, 3), got {shown.shape}")
-    owner, axis, side = exposed_faces(cells)
+        if shown.shape != (len(cubes.cells), 3):
+            raise ValueError(f"colours must have the shape ({len(cubes.cells)}, 3), got {shown.shape}")
+    # Nested grids stand beside each other here, so that none is beside another's voxels.
+    apart = cubes.cells + (cubes.cascade * (max(cubes.domain.cells) + 2))[:, None]
+    owner, axis, side = exposed_faces(apart)
     view = camera.size if size is None else checked_size(size)
-    corners = _corners(domain, cells, owner, axis, side, width)
-    normals = _outward(domain, cells, owner, corners, width)
+    corners = _corners(cubes, owner, axis, side)
+    normals = _outward(cubes, owner, corners)
     seen = _may_be_seen(corners, normals, camera, view)
-    return _draw(corners[seen], normals[seen], cells[owner[seen]], shown[owner[seen]], camera, view, len(owner))
+    return _draw(corners[seen], normals[seen], cubes.cells[owner[seen]], shown[owner[seen]], camera, view, len(owner))
 
 
 def exposed_faces(cells: NDArray[np.integer]) -> tuple[NDArray[np.intp], NDArray[np.intp], NDArray[np.intp]]:
@@ -87,24 +92,44 @@ def exposed_faces(cells: NDArray[np.integer]) -> tuple[NDArray[np.intp], NDArray
     return owners, axes, sides
 
 
-def cell_diagonals(domain: _core.Domain, cells: NDArray[np.integer]) -> Floats:
-    """(n,): distance between opposite corners of cells (n, 3), scene units."""
-    lower, upper = _to_world(domain, cells, 1), _to_world(domain, cells + 1, 1)
-    length: Floats = np.linalg.norm(upper - lower, axis=1)
-    return length
+@dataclass(frozen=True, eq=False)
+class _Cubes:
+    """Cells (n, 3) of one of a domain's nested grids (n,), each `width` voxels wide."""
+
+    domain: _core.Domain
+    cells: Ints
+    cascade: NDArray[np.integer]
+    width: int = 1
+
+    def to_world(self, owner: NDArray[np.intp], corner: NDArray[Any]) -> Floats:
+        """World space of points (n, ..., 3) in the grids of the cells `owner`; what reaches beyond a grid ends with it."""
+        voxels = np.minimum(corner * np.float32(self.width), np.asarray(self.domain.cells, np.float32)).astype(np.float32)
+        world: Floats = np.empty_like(voxels)
+        grid = self.cascade[owner]
+        for number in range(self.domain.cascades):
+            own = grid == number
+            world[own] = self.domain.to_world(voxels[own].reshape(-1, 3), number).reshape(voxels[own].shape)
+        return world
 
 
-def _cubes(voxels: Any, camera: Camera, level: int) -> tuple[_core.Domain, Ints, Floats, int]:
-    """The domain, cells (n, 3), colours (n, 3), and the width of a cell in voxels of the domain."""
+def _cubes(voxels: Any, camera: Camera, level: int) -> tuple[_Cubes, Floats]:
+    """Where cubes stand, and their colours (n, 3)."""
     if isinstance(voxels, _core.VoxelGrid):
-        return voxels.domain, voxels.coordinates, voxels.albedo, 1
+        return _of_grid(voxels), voxels.albedo
     if isinstance(voxels, _core.LitVoxels):
-        return voxels.voxels.domain, voxels.voxels.coordinates, _facing_radiance(voxels, camera), 1
+        return _of_grid(voxels.voxels), _facing_radiance(voxels, camera)
     if isinstance(voxels, _core.Pyramid):
+        if voxels.domain.cascades > 1:
+            raise ValueError("voxel_view draws the pyramid of one grid, not of nested ones")
         texels = voxels.level(level)
         z, y, x = np.nonzero(texels[..., 3] > 0)
-        return voxels.domain, np.stack([x, y, z], 1).astype(np.int32), texels[z, y, x, :3], 1 << level
+        return _Cubes(voxels.domain, np.stack([x, y, z], 1).astype(np.int32), np.zeros(len(x), np.int64), 1 << level), texels[z, y, x, :3]
     raise TypeError(f"voxel_view draws a VoxelGrid, LitVoxels or a Pyramid, got {type(voxels).__name__}")
+
+
+def _of_grid(voxels: _core.VoxelGrid) -> _Cubes:
+    cells_of_grid = int(np.prod(voxels.domain.cells))
+    return _Cubes(voxels.domain, voxels.coordinates, voxels.cell // np.uint32(cells_of_grid))
 
 
 def _facing_radiance(lit: _core.LitVoxels, camera: Camera) -> Floats:
@@ -117,27 +142,18 @@ def _facing_radiance(lit: _core.LitVoxels, camera: Camera) -> Floats:
     return facing
 
 
-def _corners(
-    domain: _core.Domain, cells: Ints, owner: NDArray[np.intp], axis: NDArray[np.intp], side: NDArray[np.intp], width: int
-) -> Floats:
+def _corners(cubes: _Cubes, owner: NDArray[np.intp], axis: NDArray[np.intp], side: NDArray[np.intp]) -> Floats:
     """(faces, 4, 3): world space, in order around each face."""
     steps: NDArray[np.int16] = AROUND[axis]
     steps[np.arange(len(axis)), :, axis] += side[:, None].astype(np.int16)
-    return _to_world(domain, cells[owner][:, None] + steps, width)
+    return cubes.to_world(owner, cubes.cells[owner][:, None] + steps)
 
 
-def _to_world(domain: _core.Domain, corner: NDArray[Any], width: int) -> Floats:
-    """World space of points in cells that are so many voxels wide; what reaches beyond the domain ends with it."""
-    voxels = np.minimum(corner * np.float32(width), np.asarray(domain.cells, np.float32)).astype(np.float32)
-    world: Floats = np.asarray(domain.lower, np.float32) + voxels * np.float32(domain.voxel_size)
-    return world
-
-
-def _outward(domain: _core.Domain, cells: Ints, owner: NDArray[np.intp], corners: Floats, width: int) -> Floats:
+def _outward(cubes: _Cubes, owner: NDArray[np.intp], corners: Floats) -> Floats:
     """(faces, 3): unit normals that point out of the cells."""
     normals = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
     normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), np.float32(1e-30))
-    out = corners.mean(1) - _to_world(domain, cells[owner] + 0.5, width)
+    out = corners.mean(1) - cubes.to_world(owner, cubes.cells[owner] + 0.5)
     flip = np.einsum("ij,ij->i", normals, out) < 0
     outward: Floats = np.where(flip[:, None], -normals, normals)
     return outward
@@ -165,7 +181,8 @@ def _draw(corners: Floats, normals: Floats, cells: Ints, colours: Floats, camera
     count = len(corners)
     first = 4 * np.arange(count, dtype=np.uint32)[:, None]
     triangles = (first + np.array([0, 1, 2, 0, 2, 3], np.uint32)).reshape(-1, 3)
-    meshes = [Mesh(corners.reshape(-1, 3), triangles)] if count else []
+    middle = corners.mean(1, keepdims=True)
+    meshes = [Mesh((corners + OVERLAP * (corners - middle)).reshape(-1, 3), triangles)] if count else []
     seen = trace_gbuffer(Scene(meshes=meshes), camera, size)
     hit = np.isfinite(seen.depth)
     face = seen.triangle[hit] // 2

@@ -102,3 +102,32 @@ def test_a_level_of_the_pyramid_has_cubes_twice_as_wide():
 def test_other_values_are_refused():
     with pytest.raises(TypeError, match="VoxelGrid"):
         ir.voxel_view(ir.scenes.cornell_box(), CAMERA)
+
+
+def test_a_warped_cell_is_drawn_where_its_corners_lie():
+    """Cells of a view volume: the picture of one of its own eye shows them on the grid of its own columns and rows."""
+    room = ir.scenes.cornell_box()
+    camera = room.camera
+    domain = ir.Grid(resolution=16, warp=ir.Perspective(far=3.0, widening=1.0)).place(room, camera, (64, 64))
+    voxels = ir.voxelize(ir.ExactOverlap(), room, domain)
+    view = ir.voxel_view(voxels, camera, (64, 64))
+    seen = np.isfinite(view.depth)
+    rows, columns = np.nonzero(seen)
+    assert len(rows) > 1000
+    # Axis by axis the cell's number says in which sixteenth of the picture it stands, whichever way the axis runs.
+    across, down = view.cell[seen][:, 0], view.cell[seen][:, 1]
+    for number, pixel in ((across, columns), (down, rows)):
+        assert (np.minimum(abs(number - pixel * 16 // 64), abs(15 - number - pixel * 16 // 64)) == 0).mean() > 0.99
+
+
+def test_nested_grids_are_drawn_each_with_its_own_voxels():
+    room = ir.scenes.cornell_box()
+    domain = ir.Grid(resolution=16, cascades=2).place(room, room.camera, (32, 32))
+    voxels = ir.voxelize(ir.ExactOverlap(), room, domain)
+    view = ir.voxel_view(voxels, room.camera, (32, 32))
+    surface = ir.trace_gbuffer(room, room.camera, (32, 32)).depth
+    seen = np.isfinite(surface)
+    assert seen.mean() > 0.5
+    # The surface lies in a voxel, so the first voxel is at most a diagonal of the coarsest behind it.
+    assert (view.depth - surface)[seen].max() < 2 * domain.voxel_size * np.sqrt(3)
+    assert set(np.unique(voxels.cell // 16**3)) == {0, 1}
