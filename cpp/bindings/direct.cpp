@@ -28,6 +28,18 @@ void bind_shadow(py::module_& m) {
         py::arg("technique"), py::arg("scene"), py::arg("gbuffer"), py::arg("seed") = 0);
 }
 
+SharedLight cone_shadow(const VoxelCones& technique, const BoundScene& s, const GBuffer& g,
+                        const std::vector<std::shared_ptr<const Pyramid>>& pyramids, std::uint32_t seed) {
+    std::vector<const Pyramid*> each;
+    for (const auto& pyramid : pyramids) {
+        if (pyramid == nullptr) throw py::type_error("pyramids must be Pyramids, got None");
+        each.push_back(pyramid.get());
+    }
+    return run([&] {
+        return std::make_shared<DirectLight>(shadow(technique, s.scene, *s.intersector, *s.lights, g, each, seed));
+    });
+}
+
 /// The pixels of an (h, w, 3) image, borrowed from numpy; ValueError unless it has the G-buffer's size.
 std::span<const vec3> image_pixels(const py::object& image, const GBuffer& g, const char* name) {
     const auto array = exact_array<float>(image, name);
@@ -98,6 +110,8 @@ void bind_direct(py::module_& m) {
     bind_stage(m, "sky", "What pixels reflect of the environment.", true, static_cast<const Sky*>(nullptr));
     bind_shadow<TracedShadows>(m);
     bind_shadow<ShadowMap>(m);
+    m.def("cone_shadow", &cone_shadow, py::arg("technique"), py::arg("scene"), py::arg("gbuffer"), py::arg("pyramids"),
+          py::arg("seed") = 0, "VoxelCones through the pyramids of one scene's voxels, one or more.");
     m.def(
         "sky",
         [](const TracedSky& technique, const BoundScene& s, const GBuffer& g, std::uint32_t seed) -> SharedLight {

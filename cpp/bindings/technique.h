@@ -86,11 +86,27 @@ struct accepted<std::variant<T...>> {
     static py::tuple classes() { return py::make_tuple(py::type::of<T>()...); }
 };
 
+template <Described T>
+py::object bind_technique(py::module_& m);
+
+/// Binds the techniques that a knob may hold: they must be known before the one that holds them.
+template <class Value>
+struct held {
+    static void bind(py::module_& m) {
+        if constexpr (Described<Value>) bind_technique<Value>(m);
+    }
+};
+template <class... T>
+struct held<std::variant<T...>> {
+    static void bind(py::module_& m) { (bind_technique<T>(m), ...); }
+};
+
 /// Binds a technique once; a later call returns the same class.
 template <Described T>
 py::object bind_technique(py::module_& m) {
     const auto name = std::string(T::description.name);
     if (py::hasattr(m, name.c_str())) return m.attr(name.c_str());
+    for_each_param<T>([&](const auto& param) { held<std::remove_cvref_t<decltype(std::declval<T>().*param.member)>>::bind(m); });
 
     auto cls = py::class_<T>(m, name.c_str(), py::is_final());
     py::list names;

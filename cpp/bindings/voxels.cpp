@@ -208,11 +208,20 @@ void bind_pyramid(py::module_& m) {
         .def_readonly("faces", &Pyramid::faces, "1, or 6 from the second level on: seen through -x +x -y +y -z +z.")
         .def_readonly("scale", &Pyramid::scale, "Radiance of a stored 1.")
         .def_property_readonly(
+            "lit", [](const Pyramid& p) { return std::const_pointer_cast<LitVoxels>(p.lit); }, "The voxels it was made from.")
+        .def_property_readonly(
             "levels", [](const Pyramid& p) { return p.levels.size(); }, "How many levels; the last is one texel.")
         .def_property_readonly("bytes", &Pyramid::bytes, "Memory the levels hold.")
         .def(
             "level", &read_level, py::arg("index"), py::arg("face") = 0,
             "(z, y, x, 4) float32, a copy: radiance premultiplied by opacity in W/(m^2 sr), and opacity. 0 is the finest level.");
+}
+
+VoxelHistory history_of(
+    const std::variant<std::monostate, std::shared_ptr<const Pyramid>, std::shared_ptr<const LitVoxels>>& given) {
+    if (const auto* pyramid = std::get_if<1>(&given)) return {(*pyramid)->lit, *pyramid};
+    if (const auto* lit = std::get_if<2>(&given)) return {*lit, nullptr};
+    return {};
 }
 
 }  // namespace
@@ -237,16 +246,15 @@ void bind_voxels(py::module_& m) {
         py::arg("technique"), py::arg("scene"), py::arg("domain"), "The voxels of the scene's surface.");
     m.def(
         "light_voxels",
-        [](const LightVoxels& technique, const BoundScene& scene, std::shared_ptr<VoxelGrid> voxels, std::uint32_t seed) {
+        [](const LightVoxels& technique, const BoundScene& scene, std::shared_ptr<const VoxelGrid> voxels, std::uint32_t seed,
+           const std::variant<std::monostate, std::shared_ptr<const Pyramid>, std::shared_ptr<const LitVoxels>>& history) {
+            const LightingTask task{scene.scene, *scene.intersector, *scene.lights, voxels, voxels, history_of(history), seed};
             return run([&] {
-                return std::visit(
-                    [&](const auto& t) {
-                        return std::make_shared<LitVoxels>(light_voxels(t, *scene.lights, *scene.intersector, voxels, seed));
-                    },
-                    technique);
+                return std::visit([&](const auto& t) { return std::make_shared<LitVoxels>(light_voxels(t, task)); }, technique);
             });
         },
-        py::arg("technique"), py::arg("scene"), py::arg("voxels"), py::arg("seed") = 0, "The radiance that each voxel reflects.");
+        py::arg("technique"), py::arg("scene"), py::arg("voxels"), py::arg("seed") = 0, py::arg("history") = py::none(),
+        "The radiance that each voxel reflects. history: the last frame's LitVoxels, or the Pyramid made from them.");
     m.def(
         "prefilter",
         [](const Prefilter& technique, std::shared_ptr<const LitVoxels> lit) {

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -34,8 +35,15 @@ def trace_gbuffer(scene: Scene, camera: Camera | str | None = None, size: tuple[
     return _core.trace_gbuffer(scene.core, core_camera(view), width, height)
 
 
-def shadow(technique: Any, scene: Scene, gbuffer: _core.GBuffer, seed: int = 0) -> _core.DirectLight:
-    """Light of point, spot and directional lights and of emitters, reflected once at the pixels: `.radiance` (height, width, 3)."""
+def shadow(
+    technique: Any, scene: Scene, gbuffer: _core.GBuffer, seed: int = 0, pyramids: Sequence[_core.Pyramid] = ()
+) -> _core.DirectLight:
+    """Light of point, spot and directional lights and of emitters, reflected once at the pixels: `.radiance` (height, width, 3).
+    VoxelCones needs the voxels' pyramids; what several let through is multiplied."""
+    if isinstance(technique, _core.VoxelCones):
+        if not pyramids:
+            raise ValueError("VoxelCones needs the voxels to march through: shadow(..., pyramids=[prefilter(...)])")
+        return _core.cone_shadow(technique, scene.core, gbuffer, list(pyramids), seed)
     return _core.shadow(technique, scene.core, gbuffer, seed)
 
 
@@ -66,9 +74,22 @@ def voxelize(technique: Any, scene: Scene, domain: _core.Domain) -> _core.VoxelG
     return _core.voxelize(technique, scene.core, domain)
 
 
-def light_voxels(technique: Any, scene: Scene, voxels: _core.VoxelGrid, seed: int = 0) -> _core.LitVoxels:
-    """The radiance that each voxel reflects."""
-    return _core.light_voxels(technique, scene.core, voxels, seed)
+def light_voxels(technique: Any, scene: Scene, voxels: _core.VoxelGrid, seed: int = 0, history: Any = None) -> _core.LitVoxels:
+    """The radiance that each voxel reflects. history: what `light_history` kept of the last frame, for BlendHistory and Bounces."""
+    return _core.light_voxels(technique, scene.core, voxels, seed, history)
+
+
+def holds_all_bounces(technique: Any) -> bool:
+    """Whether voxels lit by this technique come to hold light of all bounces, from frame to frame."""
+    held = technique.light_voxels if isinstance(technique, _core.BlendHistory) else technique
+    return isinstance(held, _core.Bounces)
+
+
+def light_history(technique: Any, pyramid: _core.Pyramid) -> Any:
+    """What `light_voxels` wants of this frame in the next one: the pyramid for Bounces, its voxels for BlendHistory, else None."""
+    if holds_all_bounces(technique):
+        return pyramid
+    return pyramid.lit if isinstance(technique, _core.BlendHistory) else None
 
 
 def prefilter(technique: Any, lit: _core.LitVoxels) -> _core.Pyramid:
@@ -103,7 +124,14 @@ def techniques(stage: str) -> tuple[type, ...]:
 
 
 def exact(technique: Any) -> Any:
-    """The exact counterpart of a technique: its stage's slow, unapproximated one. ValueError for a stage without."""
+    """The exact counterpart of a technique: its stage's slow, unapproximated one. ValueError for a stage without.
+
+    Around another technique: of light without history, that of what it holds; of all bounces, all bounces of exact light.
+    """
+    if isinstance(technique, _core.BlendHistory):
+        return exact(technique.light_voxels)
+    if isinstance(technique, _core.Bounces):
+        return technique.replace(light_voxels=exact(technique.light_voxels))
     for stage in type(technique).stages:
         counterpart = _core.stages[stage]["exact"]
         if counterpart is not None:

@@ -17,7 +17,7 @@ LIGHTS = {
     "spot": ir.SpotLight(position=(0.4, 1.5, 0.3), direction=(-0.2, -1, -0.1), intensity=(3, 2, 1), inner=25, outer=40),
     "wide spot": ir.SpotLight(position=(0.4, 1.5, 0.3), direction=(-0.2, -1, -0.1), intensity=(3, 2, 1), inner=60, outer=85),
 }
-SHADOWS = [ir.TracedShadows(), ir.ShadowMap(size=64)]
+SHADOWS = [ir.TracedShadows(), ir.ShadowMap(size=64), ir.VoxelCones()]
 BOX = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], np.float32)
 BOX_FACES = np.array(
     [[0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5], [0, 4, 5], [0, 5, 1], [2, 3, 7], [2, 7, 6], [0, 2, 6], [0, 6, 4], [1, 5, 7], [1, 7, 3]],
@@ -51,8 +51,16 @@ def scene(*lights, scale=1.0, move=(0, 0, 0), glossy=False, extra=()):
     return ir.Scene(meshes=[*map(place, meshes), *extra], lights=moved, cameras={"view": camera})
 
 
+def pyramids(technique, of):
+    """What VoxelCones march through."""
+    if not isinstance(technique, ir.VoxelCones):
+        return []
+    voxels = ir.voxelize(ir.ExactOverlap(), of, ir.Grid(resolution=32).place(of))
+    return [ir.prefilter(ir.SurfaceCoverage(), ir.light_voxels(ir.TracedLighting(), of, voxels))]
+
+
 def shadow(technique, of, seed=0, size=SIZE):
-    return np.array(ir.shadow(technique, of, ir.trace_gbuffer(of, size=size), seed).radiance)
+    return np.array(ir.shadow(technique, of, ir.trace_gbuffer(of, size=size), seed, pyramids(technique, of)).radiance)
 
 
 def sky(technique, of, seed=0, size=SIZE):

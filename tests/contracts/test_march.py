@@ -268,19 +268,23 @@ def test_flat_and_tiny_grids_give_finite_light(cls, resolution):
         assert np.isfinite(ir.glossy(quick(cls), pyramid, gbuffer, scene).radiance).all()
 
 
-@pytest.mark.parametrize("prefilter", ir.techniques("prefilter"))
-def test_black_walls_with_an_emitter_have_no_indirect_light(prefilter):
+@pytest.mark.parametrize(("stage", "technique"), [(stage, cls) for stage in ("prefilter", "light_voxels", "shadow") for cls in ir.techniques(stage)])
+def test_black_walls_with_an_emitter_have_no_indirect_light(stage, technique):
     walls = ir.Mesh(*box((-1, 0, -1), (1, 2, 1), inward=True), material=ir.Material(albedo=(0.0,) * 3))
     lamp = ir.Mesh(*box((-0.2, 1.5, -0.2), (0.2, 1.6, 0.2)), material=ir.Material(albedo=(0.0,) * 3, emission=(5.0,) * 3))
     scene = ir.Scene(meshes=[walls, lamp], cameras={"view": ir.Camera(position=(0.5, 1, 0.9), target=(0, 0.8, -1), fov_x=80)})
-    frame = ir.methods.VoxelConeTracing(grid=ir.Grid(resolution=32), prefilter=prefilter()).render(scene, size=SIZE)
-    assert frame.indirect.max() == 0 and frame.direct.max() > 1
+    method = ir.methods.VoxelConeTracing(grid=ir.Grid(resolution=32)).replace({stage: technique()}).prepare(scene)
+    first = method.render(size=SIZE)
+    for frame in (first, method.render(size=SIZE, history=first.history)):
+        assert frame.indirect.max() == 0 and frame.direct.max() > 1
 
 
 @pytest.mark.parametrize(
     "changes",
     [{}, {"march": ir.TracedRays(samples=4)}, {"glossy": ir.TracedRays(samples=4)}, {"glossy": None}, {"share": ir.EveryPixel()},
-     {"sky": ir.TracedSky(samples=1)}, {"prefilter": ir.Anisotropic()}, {"voxelize": ir.ExactOverlap()}],
+     {"sky": ir.TracedSky(samples=1)}, {"prefilter": ir.Anisotropic()}, {"voxelize": ir.ExactOverlap()},
+     {"light_voxels": ir.ShadowMapInjection(size=64)}, {"light_voxels": ir.ConeLighting(both_sides=True)}, {"light_voxels": ir.Bounces()},
+     {"light_voxels": ir.BlendHistory(slabs=2)}, {"shadow": ir.VoxelCones()}],
     ids=str,
 )  # fmt: skip
 def test_the_method_takes_any_technique_of_each_stage(changes):

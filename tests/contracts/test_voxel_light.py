@@ -24,6 +24,17 @@ def coverage(request):
     return request.param()
 
 
+def sampled(technique, samples):
+    """The technique, or what it holds, with as many samples."""
+    if hasattr(technique, "light_voxels"):
+        return technique.replace(light_voxels=sampled(technique.light_voxels, samples))
+    return technique.replace(samples=samples)
+
+
+def by_cones(technique):
+    return isinstance(technique, ir.ConeLighting)
+
+
 def lit_of(technique, scene, resolution=16, seed=0, domain=None, voxelize=None):
     voxels = ir.voxelize(voxelize or ir.SurfaceSampling(), scene, domain or ir.Grid(resolution=resolution).place(scene))
     return ir.light_voxels(technique, scene, voxels, seed)
@@ -86,7 +97,7 @@ def test_an_emitter_overhead_lights_the_floor_by_its_form_factor(lighting):
     spot = floor(half=0.01, albedo=(0.5,) * 3)
     scene = scene_of(lamp, spot)
     domain = _core.Domain(lower=[-0.6, -0.15, -0.6], voxel_size=0.08, cells=[15, 15, 15])
-    lit = lit_of(lighting.replace(samples=1024), scene, domain=domain)
+    lit = lit_of(sampled(lighting, 1024), scene, domain=domain)
     low = lit.voxels.coordinates[:, 1] < 5
     assert not lit.radiance[~low].any()  # the lamp reflects nothing, and what it emits is kept apart
     assert np.allclose(lit.radiance[low], 0.5 * 2 * 0.239456, rtol=0.01)  # 1024 stratified samples

@@ -90,18 +90,18 @@ def unsnapped(place, grid, scene, camera=None):
     return _core.Domain(lower=[float(v) for v in lower], voxel_size=domain.voxel_size, cells=domain.cells)
 
 
-def no_cosine_at_pixels(shadow, technique, scene, gbuffer, seed=0):
+def no_cosine_at_pixels(shadow, technique, scene, gbuffer, seed=0, pyramids=()):
     """Directional light without the receiver's cosine (45 degrees in the scene of the blade)."""
-    return SimpleNamespace(radiance=shadow(technique, scene, gbuffer, seed).radiance * np.float32(np.sqrt(2)))
+    return SimpleNamespace(radiance=shadow(technique, scene, gbuffer, seed, pyramids).radiance * np.float32(np.sqrt(2)))
 
 
-def unshadowed(shadow, technique, scene, gbuffer, seed=0):
+def unshadowed(shadow, technique, scene, gbuffer, seed=0, pyramids=()):
     meshes = [mesh for mesh in scene.meshes if max(mesh.material.albedo) > 0]
     bare = ir.Scene(meshes=meshes, lights=scene.lights, cameras=scene.cameras)
-    return shadow(technique, bare, gbuffer, seed)
+    return shadow(technique, bare, gbuffer, seed, pyramids)
 
 
-def half_light_source(shadow, technique, scene, gbuffer, seed=0):
+def half_light_source(shadow, technique, scene, gbuffer, seed=0, pyramids=()):
     """The emitter taken for a quarter of its area: a penumbra half as wide, at the same power."""
 
     def narrowed(mesh):
@@ -109,7 +109,7 @@ def half_light_source(shadow, technique, scene, gbuffer, seed=0):
         return ir.Mesh(mesh.positions * np.float32((0.5, 1, 0.5)), mesh.triangles, material=strong)
 
     meshes = [narrowed(mesh) if mesh.material.emits else mesh for mesh in scene.meshes]
-    return shadow(technique, ir.Scene(meshes=meshes, lights=scene.lights), gbuffer, seed)
+    return shadow(technique, ir.Scene(meshes=meshes, lights=scene.lights), gbuffer, seed, pyramids)
 
 
 class Stale:
@@ -118,7 +118,7 @@ class Stale:
     def __init__(self):
         self.lit = None
 
-    def __call__(self, light_voxels, technique, scene, voxels, seed=0):
+    def __call__(self, light_voxels, technique, scene, voxels, seed=0, history=None):
         if self.lit is None:
             self.lit = light_voxels(technique, scene, voxels, seed)
         return self.lit

@@ -45,6 +45,7 @@ struct LitVoxels {
     std::shared_ptr<const VoxelGrid> grid;
     Buffer<vec3> radiance;  // leaving the front
     Buffer<vec3> back;      // leaving the back; empty where it was not lit apart: it then passes for as bright as the front
+    std::uint32_t frame = 0;  // how many frames before this one its history holds
     Counts counts;
 
     std::size_t bytes() const { return radiance.bytes() + back.bytes(); }

@@ -78,4 +78,11 @@ std::vector<LightView> views_of(const SpotLight& light, int size) {
 
 std::vector<LightView> views_of(const PointLight& light, int size) { return cube_views(light.position, size); }
 
+std::vector<LightView> views_of_light(const Scene& scene, int i, int size) {
+    const int points = static_cast<int>(scene.point_lights.size()), spots = static_cast<int>(scene.spot_lights.size());
+    if (i < points) return views_of(scene.point_lights[i], size);
+    if (i < points + spots) return views_of(scene.spot_lights[i - points], size);
+    return {view_of(scene.directional_lights[i - points - spots], scene.geometry->bounds(), size)};
+}
+
 }  // namespace interreflect

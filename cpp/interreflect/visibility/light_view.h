@@ -51,25 +51,34 @@ std::vector<LightView> views_of(const SpotLight& light, int size);
 /// The six sides of a cube; each a texel wider than 90 degrees on every side, so that neighbours of border texels exist.
 std::vector<LightView> views_of(const PointLight& light, int size);
 
-/// Calls store(x, y, hit) for the nearest hit through the centre of every texel, from all threads.
+/// The views of light `i`: point, then spot, then directional lights, as LightSampler counts them.
+std::vector<LightView> views_of_light(const Scene& scene, int i, int size);
+
+inline constexpr int view_tile_side = 32;
+
+/// Calls store(x, y, hit) for the nearest hit through the centre of every texel of a tile, always in the same order.
+template <class Store>
+void trace_tile(const LightView& view, const Intersector& intersector, const Tile& tile, const Store& store) {
+    constexpr int side = 4;
+    RayPacket packet;
+    for (int y0 = tile.y0; y0 < tile.y1; y0 += side)
+        for (int x0 = tile.x0; x0 < tile.x1; x0 += side) {
+            std::uint32_t active = 0;
+            for (int lane = 0; lane < RayPacket::width; ++lane) {
+                const int x = x0 + lane % side, y = y0 + lane / side;
+                packet.set(lane, view.ray(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f));
+                active |= static_cast<std::uint32_t>(x < tile.x1 && y < tile.y1) << lane;
+            }
+            intersector.nearest(packet, active);
+            for (int lane = 0; lane < RayPacket::width; ++lane)
+                if (((active >> lane) & 1U) != 0) store(x0 + lane % side, y0 + lane / side, packet.hit(lane));
+        }
+}
+/// The same for all texels, from all threads.
 template <class Store>
 void trace_view(const LightView& view, const Intersector& intersector, const Store& store) {
-    constexpr int side = 4;
-    parallel_tiles(view.size, view.size, 8 * side, [&](const Tile& tile) {
-        RayPacket packet;
-        for (int y0 = tile.y0; y0 < tile.y1; y0 += side)
-            for (int x0 = tile.x0; x0 < tile.x1; x0 += side) {
-                std::uint32_t active = 0;
-                for (int lane = 0; lane < RayPacket::width; ++lane) {
-                    const int x = x0 + lane % side, y = y0 + lane / side;
-                    packet.set(lane, view.ray(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f));
-                    active |= static_cast<std::uint32_t>(x < tile.x1 && y < tile.y1) << lane;
-                }
-                intersector.nearest(packet, active);
-                for (int lane = 0; lane < RayPacket::width; ++lane)
-                    if (((active >> lane) & 1U) != 0) store(x0 + lane % side, y0 + lane / side, packet.hit(lane));
-            }
-    });
+    parallel_tiles(view.size, view.size, view_tile_side,
+                   [&](const Tile& tile) { trace_tile(view, intersector, tile, store); });
 }
 
 }  // namespace interreflect

@@ -8,14 +8,6 @@
 namespace interreflect {
 namespace {
 
-/// Views of the i-th light in LightSampler's order.
-std::vector<LightView> views_of_light(const Scene& scene, int i, int size) {
-    const int points = static_cast<int>(scene.point_lights.size()), spots = static_cast<int>(scene.spot_lights.size());
-    if (i < points) return views_of(scene.point_lights[i], size);
-    if (i < points + spots) return views_of(scene.spot_lights[i - points], size);
-    return {view_of(scene.directional_lights[i - points - spots], scene.geometry->bounds(), size)};
-}
-
 void add_light(DirectLight& result, int number, const DepthMaps& maps, float bias, const Scene& scene, const LightSampler& lights,
                const GBuffer& g) {
     for_each_tile(g, [&](const TilePixels& pixels) {

@@ -1,11 +1,6 @@
 #pragma once
-#include <cstdint>
-#include <memory>
-
 #include "data/technique.h"
-#include "data/voxel_grid.h"
-#include "shading/lights.h"
-#include "visibility/intersector.h"
+#include "voxels/light_voxels/lighting_task.h"
 
 namespace interreflect {
 
@@ -27,7 +22,6 @@ struct TracedLighting {
                        "bright as the front"});
 };
 
-LitVoxels light_voxels(const TracedLighting& technique, const LightSampler& lights, const Intersector& intersector,
-                       std::shared_ptr<const VoxelGrid> voxels, std::uint32_t seed);
+LitVoxels light_voxels(const TracedLighting& technique, const LightingTask& task);
 
 }  // namespace interreflect

@@ -57,6 +57,8 @@ ConeCounts march_batch(const Pyramid& pyramid, const AirMap& air, const ConeSche
             // outermost texels, so an outer wall closes as tightly as an inner one.
             const V distance = hn::Set(d, step.distance);
             active = hn::And(active, hn::Lt(hn::Sub(distance, hn::Set(d, step.reach)), exit));
+            if (batch.limited)
+                active = hn::And(active, hn::Lt(hn::Add(distance, hn::Set(d, step.reach)), hn::Load(d, batch.limit + first)));
             if (hn::AllFalse(d, active)) break;
             const auto marching = static_cast<std::uint64_t>(hn::CountTrue(d, active));
             counts.steps += marching;

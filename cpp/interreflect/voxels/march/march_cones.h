@@ -20,6 +20,9 @@ struct ConeBatch {
     // agrees with that axis: 1 where the layer's place in the grid is known, 0 where its mean over all places must do.
     alignas(64) float axis_plane[capacity], axis_start[capacity], axis_direction[capacity], aligned[capacity];
     alignas(64) float axis_cells[capacity];  // size of the domain along that axis
+    // Where `limited`: the cone ends where its filter reaches this far from the start, voxels.
+    bool limited = false;
+    alignas(64) float limit[capacity];
     // Results: radiance in the pyramid's unit (times `scale` is W/(m^2 sr)), and the share that leaves the domain unblocked.
     alignas(64) float r[capacity], g[capacity], b[capacity], open[capacity];
 };

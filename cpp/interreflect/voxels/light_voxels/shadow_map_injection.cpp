@@ -1,0 +1,101 @@
+#include "voxels/light_voxels/shadow_map_injection.h"
+
+#include <atomic>
+#include <vector>
+
+#include "math/parallel.h"
+#include "visibility/depth_map.h"
+#include "voxels/light_voxels/traced_block.h"
+
+namespace interreflect {
+namespace {
+
+// Texels: a surface that bends within its voxel departs from its tangent plane by less (ShadowMap's default and reason).
+constexpr float bias = 1.0f;
+
+/// A bit for every cell of a domain, set from all threads.
+class CellBits {
+  public:
+    explicit CellBits(const Domain& domain) : domain_(domain), words_((domain.cell_count() + 31) / 32) {}
+
+    void set(const vec3& voxels) {
+        const ivec3 at(glm::floor(voxels));
+        if (glm::any(glm::lessThan(at, ivec3(0))) || glm::any(glm::greaterThanEqual(at, domain_.cells))) return;
+        const std::uint32_t cell = domain_.cell(at), bit = 1U << (cell & 31U);
+        std::atomic<std::uint32_t>& word = words_[cell >> 5U];
+        if ((word.load(std::memory_order_relaxed) & bit) == 0) word.fetch_or(bit, std::memory_order_relaxed);
+    }
+    bool has(std::uint32_t cell) const { return (words_[cell >> 5U].load(std::memory_order_relaxed) >> (cell & 31U) & 1U) != 0; }
+
+  private:
+    const Domain& domain_;
+    std::vector<std::atomic<std::uint32_t>> words_;
+};
+
+/// Brings every texel's hit to its cell.
+void mark(const DepthMap& map, const Domain& domain, CellBits& cells) {
+    // Rounding of hits, in voxels: far above it, far below a voxel.
+    constexpr float nudge = 1e-2f;
+    const LightView& view = map.view;
+    parallel_blocks(static_cast<std::size_t>(view.size), 16, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t y = begin; y < end; ++y)
+            for (int x = 0; x < view.size; ++x) {
+                const float depth = map.depth[y * static_cast<std::size_t>(view.size) + static_cast<std::size_t>(x)];
+                if (!std::isfinite(depth)) continue;
+                const Ray ray = view.ray(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
+                const vec3 hit = domain.to_voxels(ray.origin + ray.direction * depth);
+                cells.set(hit - ray.direction * nudge);
+                cells.set(hit + ray.direction * nudge);
+            }
+    });
+}
+
+/// One light: what it meets, and how far away.
+struct InjectedLight {
+    DepthMaps maps;
+    CellBits cells;
+
+    InjectedLight(const LightingTask& task, int number, int size)
+        : maps(views_of_light(task.scene, number, size), task.intersector), cells(task.voxels->domain) {
+        for (const DepthMap& map : maps.maps) mark(map, task.voxels->domain, cells);
+    }
+};
+
+/// Adds what one light brings to one side of a block of voxels.
+void add(const ShadowMapInjection& technique, const LightingTask& task, int number, const InjectedLight& light, unsigned side,
+         TracedBlock& block) {
+    const VoxelGrid& grid = *task.voxels;
+    for (std::size_t k = 0; k < block.count(); ++k) {
+        const std::size_t voxel = block.first() + k;
+        const VoxelPoint& point = (side == 0 ? grid.points : grid.backs)[voxel];
+        if (point.reflects == 0 || !light.cells.has(grid.cell[voxel])) continue;
+        const LightSampler::Delta arriving = task.lights.delta(number, point.position);
+        const float cosine = glm::dot(point.normal, arriving.direction);
+        if (!(cosine > 0.0f) || !(max_component(arriving.irradiance) > 0.0f)) continue;
+        if (technique.radiance == "base_colour")
+            block.set(side, k, vec3(pi));  // albedo / pi times this; the paper's colour does not grow with the number of lights
+        else
+            block.add(side, k,
+                      arriving.irradiance * (cosine * light.maps.lit(point.position, point.normal, bias, point.offset)));
+    }
+}
+
+}  // namespace
+
+LitVoxels light_voxels(const ShadowMapInjection& technique, const LightingTask& task) {
+    std::vector<InjectedLight> lights;
+    std::uint64_t texels = 0;
+    if (task.voxels->size() > 0)
+        for (int i = 0; i < task.lights.delta_count(); ++i) {
+            lights.emplace_back(task, i, technique.size);
+            texels += lights.back().maps.texels();
+        }
+    LitVoxels lit = light_blocks(task, technique.both_sides, technique.samples, [&](TracedBlock& block) {
+        for (unsigned side = 0; side < (technique.both_sides ? 2U : 1U); ++side)
+            for (std::size_t i = 0; i < lights.size(); ++i) add(technique, task, static_cast<int>(i), lights[i], side, block);
+    });
+    lit.counts.rays = texels;
+    return lit;
+}
+
+}  // namespace interreflect
