@@ -35,9 +35,8 @@ SharedLight cone_shadow(const VoxelCones& technique, const BoundScene& s, const 
         if (pyramid == nullptr) throw py::type_error("pyramids must be Pyramids, got None");
         each.push_back(pyramid.get());
     }
-    return run([&] {
-        return std::make_shared<DirectLight>(shadow(technique, s.scene, *s.intersector, *s.lights, g, each, seed));
-    });
+    return run(
+        [&] { return std::make_shared<DirectLight>(shadow(technique, s.scene, *s.intersector, *s.lights, g, each, seed)); });
 }
 
 /// The pixels of an (h, w, 3) image, borrowed from numpy; ValueError unless it has the G-buffer's size.

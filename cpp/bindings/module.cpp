@@ -37,9 +37,9 @@ PYBIND11_MODULE(_core, m) {
         "thread_limit", [] { return thread_limit(); }, "How many threads work of the calling thread may use; 0: all.");
     bind_data(m);
     bind_visibility(m);
-    bind_direct(m);
     bind_reference(m);
     bind_voxels(m);
+    bind_direct(m);
     bind_march(m);
     bind_calibration(m);
 }

@@ -268,7 +268,9 @@ def test_flat_and_tiny_grids_give_finite_light(cls, resolution):
         assert np.isfinite(ir.glossy(quick(cls), pyramid, gbuffer, scene).radiance).all()
 
 
-@pytest.mark.parametrize(("stage", "technique"), [(stage, cls) for stage in ("prefilter", "light_voxels", "shadow") for cls in ir.techniques(stage)])
+@pytest.mark.parametrize(
+    ("stage", "technique"), [(stage, cls) for stage in ("prefilter", "light_voxels", "shadow") for cls in ir.techniques(stage)]
+)
 def test_black_walls_with_an_emitter_have_no_indirect_light(stage, technique):
     walls = ir.Mesh(*box((-1, 0, -1), (1, 2, 1), inward=True), material=ir.Material(albedo=(0.0,) * 3))
     lamp = ir.Mesh(*box((-0.2, 1.5, -0.2), (0.2, 1.6, 0.2)), material=ir.Material(albedo=(0.0,) * 3, emission=(5.0,) * 3))

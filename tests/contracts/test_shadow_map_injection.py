@@ -34,15 +34,12 @@ def both(scene, size, resolution=32, **knobs):
 def test_fine_maps_light_voxels_as_shadow_rays_do(light):
     scene = furnished(LIGHTS[light])
     errors = []
-    for size in (32, 128, 512):
+    for size in (24, 96, 1536):
         _, traced, injected = both(scene, size)
         errors.append(np.abs(traced - injected).mean() / traced.mean())
     assert errors[2] < errors[1] < errors[0]
-    # What remains are voxels that a border crosses: the rays look at one point of theirs, the map at the lit part; and those that
-    # two faces share, which the map sees together. Away from those the two agree.
-    _, traced, injected = both(scene, 1024)
-    agree = np.abs(traced - injected).max(1) < 0.05 * traced.max()
-    assert agree.mean() > 0.85 and injected.mean() == pytest.approx(traced.mean(), rel=0.15)
+    # What remains are points within 1.5 texels of a shadow's border, 1/20 of a voxel and more, and a cube's sides are wider.
+    assert errors[2] < 0.02
 
 
 def test_an_open_floor_gets_exactly_its_irradiance_at_every_voxel():
@@ -60,8 +57,9 @@ def test_a_map_coarser_than_the_voxels_leaves_gaps_and_a_finer_one_none():
     dark = {}
     for size in (16, 32, 128):
         dark[size] = 1 - (ir.light_voxels(ir.ShadowMapInjection(size=size), scene, voxels).radiance.max(1) > 0).mean()
-    # Every texel lights one voxel: of 64^2 at most size^2.
-    assert dark[16] == pytest.approx(1 - 16**2 / 64**2, abs=0.01) and dark[32] == pytest.approx(1 - 32**2 / 64**2, abs=0.03)
+    # Every texel lights at most one voxel; the map's margin of a texel a side misses the floor.
+    for size in (16, 32):
+        assert (size - 2) ** 2 * 0.9 < (1 - dark[size]) * len(voxels) <= size**2
     assert dark[128] == 0
 
 

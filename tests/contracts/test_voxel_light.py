@@ -88,7 +88,9 @@ def test_a_point_light_in_a_sphere_lights_every_voxel_alike(lighting):
     meshes = [mesh.replace(material=ir.Material(albedo=(0.5,) * 3)) for mesh in scene.meshes]
     radius = np.abs(scene.bounds).max()
     lit = lit_of(lighting, ir.Scene(meshes=meshes, lights=[ir.PointLight(position=(0, 0, 0), intensity=(np.pi * radius**2,) * 3)]), 32)
-    assert np.allclose(lit.radiance, 0.5, rtol=0.02)
+    # Cones about the light's direction are as wide as the sphere's own voxels where they start: these take a few per cent.
+    assert np.allclose(lit.radiance, 0.5, rtol=0.1 if by_cones(lighting) else 0.02)
+    assert lit.radiance.mean() == pytest.approx(0.5, rel=0.02)
 
 
 def test_an_emitter_overhead_lights_the_floor_by_its_form_factor(lighting):

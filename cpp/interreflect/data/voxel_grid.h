@@ -43,8 +43,8 @@ struct VoxelGrid {
 /// Reflected radiance (of direct light only, emission apart) of each voxel's surface, W/(m^2 sr).
 struct LitVoxels {
     std::shared_ptr<const VoxelGrid> grid;
-    Buffer<vec3> radiance;  // leaving the front
-    Buffer<vec3> back;      // leaving the back; empty where it was not lit apart: it then passes for as bright as the front
+    Buffer<vec3> radiance;    // leaving the front
+    Buffer<vec3> back;        // leaving the back; empty where it was not lit apart: it then passes for as bright as the front
     std::uint32_t frame = 0;  // how many frames before this one its history holds
     Counts counts;
 

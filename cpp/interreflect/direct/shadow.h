@@ -2,8 +2,9 @@
 ///
 ///   DirectLight shadow(const Technique&, const Scene&, const Intersector&, const LightSampler&, const GBuffer&, seed);
 ///
-/// VoxelCones takes the voxels' pyramids before the seed: one, or more whose transmittances are multiplied. Every technique leaves out the environment (stage sky) and what the surfaces emit themselves (the G-buffer's emission). Exact
-/// counterpart: TracedShadows.
+/// VoxelCones takes the voxels' pyramids before the seed: one, or more whose transmittances are multiplied. Every technique
+/// leaves out the environment (stage sky) and what the surfaces emit themselves (the G-buffer's emission). Exact counterpart:
+/// TracedShadows.
 #pragma once
 #include <variant>
 

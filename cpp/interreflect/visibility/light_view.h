@@ -77,8 +77,7 @@ void trace_tile(const LightView& view, const Intersector& intersector, const Til
 /// The same for all texels, from all threads.
 template <class Store>
 void trace_view(const LightView& view, const Intersector& intersector, const Store& store) {
-    parallel_tiles(view.size, view.size, view_tile_side,
-                   [&](const Tile& tile) { trace_tile(view, intersector, tile, store); });
+    parallel_tiles(view.size, view.size, view_tile_side, [&](const Tile& tile) { trace_tile(view, intersector, tile, store); });
 }
 
 }  // namespace interreflect

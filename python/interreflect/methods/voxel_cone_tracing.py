@@ -30,7 +30,8 @@ from interreflect.stages import (
 class VoxelConeTracing(Method):
     """One indirect bounce by cones through prefiltered voxels, after Crassin et al. 2011, Rehfeld et al. 2014 (section 3.1) and Freed 2018.
 
-    Everything is done anew in every frame; only the ray hierarchy is kept, and the voxels' light by BlendHistory and Bounces. `glossy=None` leaves the glossy lobe's indirect light out.
+    Everything is done anew in every frame; only the ray hierarchy is kept, and the voxels' light by BlendHistory and Bounces.
+    `glossy=None` leaves the glossy lobe's indirect light out.
     """
 
     grid: _core.Grid = _core.Grid(resolution=128)

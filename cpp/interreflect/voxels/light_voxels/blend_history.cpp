@@ -17,10 +17,9 @@ std::vector<std::uint32_t> places_in(const VoxelGrid& last, const VoxelGrid& gri
     std::vector<std::uint32_t> place(grid.size(), none);
     parallel_blocks(grid.size(), 4096, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
-            const vec3 centre = grid.domain.to_world(vec3(grid.domain.coordinates(grid.cell[i])) + 0.5f);
-            const ivec3 at(glm::floor(last.domain.to_voxels(centre)));
-            if (glm::any(glm::lessThan(at, ivec3(0))) || glm::any(glm::greaterThanEqual(at, last.domain.cells))) continue;
-            const std::uint32_t cell = last.domain.cell(at);
+            const vec3 centre = grid.domain.from_linear(grid.domain.linear_centre(grid.cell[i]));
+            std::uint32_t cell = 0;
+            if (!last.domain.locate(centre, cell)) continue;
             const auto* found = std::lower_bound(last.cell.begin(), last.cell.end(), cell);
             if (found != last.cell.end() && *found == cell) place[i] = static_cast<std::uint32_t>(found - last.cell.begin());
         }
@@ -51,7 +50,8 @@ std::shared_ptr<const VoxelGrid> part_of(const VoxelGrid& grid, std::span<const 
 }
 
 /// The voxels of one slab, and all that have no history.
-std::vector<std::uint32_t> to_be_lit(const VoxelGrid& grid, std::span<const std::uint32_t> place, int slabs, std::uint32_t frame) {
+std::vector<std::uint32_t> to_be_lit(const VoxelGrid& grid, std::span<const std::uint32_t> place, int slabs,
+                                     std::uint32_t frame) {
     std::vector<std::uint32_t> chosen;
     const auto slab = static_cast<int>(frame % static_cast<std::uint32_t>(slabs));
     for (std::size_t i = 0; i < grid.size(); ++i)

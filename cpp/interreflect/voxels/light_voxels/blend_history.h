@@ -20,8 +20,7 @@ struct BlendHistory {
     bool operator==(const BlendHistory&) const = default;
     static constexpr auto description = describe(
         "BlendHistory", "A technique whose light is blended with the last frame's, or brought to a part of the voxels a frame.",
-        Source{"Freed 2018", "4.7.2 and 5.4"},
-        Param{"light_voxels", &BlendHistory::light_voxels, "how voxels are lit anew"},
+        Source{"Freed 2018", "4.7.2 and 5.4"}, Param{"light_voxels", &BlendHistory::light_voxels, "how voxels are lit anew"},
         Param{"weight", &BlendHistory::weight, "of the last frame's radiance", Unit::none, between(0, 1)},
         Param{"slabs", &BlendHistory::slabs, "slabs of the domain along z, of which one a frame is lit, in turn", Unit::none,
               between(1, 1024)});

@@ -30,7 +30,12 @@ Pyramid opacity_of(const std::shared_ptr<const VoxelGrid>& voxels) {
 class SideBlock {
   public:
     SideBlock(const ConeLighting& technique, const LightingTask& task, const ShadowCones& shadows, unsigned side)
-        : technique_(technique), task_(task), shadows_(shadows), grid_(*task.voxels), side_(side), shift_(shift_of(task.seed, 0)) {}
+        : technique_(technique),
+          task_(task),
+          shadows_(shadows),
+          grid_(*task.voxels),
+          side_(side),
+          shift_(shift_of(task.seed, 0)) {}
 
     void begin(std::size_t begin, std::size_t end) {
         first_ = begin, count_ = end - begin;

@@ -16,15 +16,17 @@ struct ConeLighting : MarchKnobs {
 
     bool operator==(const ConeLighting&) const = default;
     static constexpr auto description = describe(
-        "ConeLighting", "By the averaged normal, with a shadow cone through the voxels to each light, and cones for the environment.",
+        "ConeLighting",
+        "By the averaged normal, with a shadow cone through the voxels to each light, and cones for the environment.",
         Source{"Rehfeld et al. 2014", "3.1"},
         Param{"half_angle", &ConeLighting::half_angle, "half aperture of the shadow cones", Unit::degrees, between(0, 70)},
         Param{"samples", &ConeLighting::samples, "points on emitters, a voxel and side", Unit::samples, between(1, 4096)},
         Param{"sky_cones", &ConeLighting::sky_cones, "cones over the hemisphere, which see the environment", Unit::none,
               between(3, 256)},
-        Param{"both_sides", &ConeLighting::both_sides,
-              "also light the back of surfaces, which Anisotropic and OctantCoverage look at; else it passes for as bright as the "
-              "front"},
+        Param{
+            "both_sides", &ConeLighting::both_sides,
+            "also light the back of surfaces, which Anisotropic and OctantCoverage look at; else it passes for as bright as the "
+            "front"},
         MarchKnobs::params);
 };
 

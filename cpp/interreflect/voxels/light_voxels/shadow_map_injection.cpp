@@ -18,10 +18,10 @@ class CellBits {
   public:
     explicit CellBits(const Domain& domain) : domain_(domain), words_((domain.cell_count() + 31) / 32) {}
 
-    void set(const vec3& voxels) {
-        const ivec3 at(glm::floor(voxels));
-        if (glm::any(glm::lessThan(at, ivec3(0))) || glm::any(glm::greaterThanEqual(at, domain_.cells))) return;
-        const std::uint32_t cell = domain_.cell(at), bit = 1U << (cell & 31U);
+    void set(const vec3& position) {
+        std::uint32_t cell = 0;
+        if (!domain_.locate(position, cell)) return;
+        const std::uint32_t bit = 1U << (cell & 31U);
         std::atomic<std::uint32_t>& word = words_[cell >> 5U];
         if ((word.load(std::memory_order_relaxed) & bit) == 0) word.fetch_or(bit, std::memory_order_relaxed);
     }
@@ -34,8 +34,7 @@ class CellBits {
 
 /// Brings every texel's hit to its cell.
 void mark(const DepthMap& map, const Domain& domain, CellBits& cells) {
-    // Rounding of hits, in voxels: far above it, far below a voxel.
-    constexpr float nudge = 1e-2f;
+    const float nudge = 1e-2f * domain.voxel_size;  // far above a hit's rounding, far below a voxel
     const LightView& view = map.view;
     parallel_blocks(static_cast<std::size_t>(view.size), 16, [&](std::size_t begin, std::size_t end) {
         for (std::size_t y = begin; y < end; ++y)
@@ -43,7 +42,7 @@ void mark(const DepthMap& map, const Domain& domain, CellBits& cells) {
                 const float depth = map.depth[y * static_cast<std::size_t>(view.size) + static_cast<std::size_t>(x)];
                 if (!std::isfinite(depth)) continue;
                 const Ray ray = view.ray(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
-                const vec3 hit = domain.to_voxels(ray.origin + ray.direction * depth);
+                const vec3 hit = ray.origin + ray.direction * depth;
                 cells.set(hit - ray.direction * nudge);
                 cells.set(hit + ray.direction * nudge);
             }
@@ -75,8 +74,7 @@ void add(const ShadowMapInjection& technique, const LightingTask& task, int numb
         if (technique.radiance == "base_colour")
             block.set(side, k, vec3(pi));  // albedo / pi times this; the paper's colour does not grow with the number of lights
         else
-            block.add(side, k,
-                      arriving.irradiance * (cosine * light.maps.lit(point.position, point.normal, bias, point.offset)));
+            block.add(side, k, arriving.irradiance * (cosine * light.maps.lit(point.position, point.normal, bias, point.offset)));
     }
 }
 

@@ -22,7 +22,8 @@ struct ShadowMapInjection {
 
     bool operator==(const ShadowMapInjection&) const = default;
     static constexpr auto description = describe(
-        "ShadowMapInjection", "What each light's shadow map meets lights the voxel there; emitters and environment by traced samples.",
+        "ShadowMapInjection",
+        "What each light's shadow map meets lights the voxel there; emitters and environment by traced samples.",
         Source{"Freed 2018", "4.3"},
         Param{"size", &ShadowMapInjection::size,
               "texels on a side of a map: of a spot or directional light, or each of a cube's six sides", Unit::texels,
@@ -32,9 +33,10 @@ struct ShadowMapInjection {
               Unit::none, one_of("lit|base_colour")},
         Param{"samples", &ShadowMapInjection::samples, "samples of the emitters, and of the environment, a voxel and side",
               Unit::samples, between(1, 4096)},
-        Param{"both_sides", &ShadowMapInjection::both_sides,
-              "also light the back of surfaces, which Anisotropic and OctantCoverage look at; else it passes for as bright as the "
-              "front"});
+        Param{
+            "both_sides", &ShadowMapInjection::both_sides,
+            "also light the back of surfaces, which Anisotropic and OctantCoverage look at; else it passes for as bright as the "
+            "front"});
 };
 
 LitVoxels light_voxels(const ShadowMapInjection& technique, const LightingTask& task);

@@ -102,7 +102,8 @@ void TracedBlock::constant_environment(int s, int samples) {
         const vec3 u = samples_of(k, 1).at(s, samples);
         const vec3 local = cosine_hemisphere({u.x, u.y});
         for (unsigned side = 0; side < sides_ && local.z > 0.0f; ++side)
-            queue(k, side, Frame(at(k, side).normal).to_world(local), std::numeric_limits<float>::infinity(), irradiance / local.z);
+            queue(k, side, Frame(at(k, side).normal).to_world(local), std::numeric_limits<float>::infinity(),
+                  irradiance / local.z);
     }
 }
 
