@@ -713,6 +713,72 @@ class Pyramid:
         """
         Radiance of a stored 1.
         """
+class Tessellation:
+    """The vertices of triangles tessellated down to voxels, averaged in the cell they fall into."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self, *, spacing: float=..., max_level: int=..., split: bool=...) -> None:
+        ...
+
+    def replace(self, *, spacing: float=..., max_level: int=..., split: bool=...) -> Tessellation:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+
+    @property
+    def spacing(self) -> float:
+        ...
+
+    @property
+    def max_level(self) -> int:
+        ...
+
+    @property
+    def split(self) -> bool:
+        ...
+class Rasterization:
+    """Every triangle rasterized along its dominant axis; a fragment is put into the cell it falls into."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self, *, samples: int=..., conservative: str=..., oversampling: int=..., blend: str=...) -> None:
+        ...
+
+    def replace(self, *, samples: int=..., conservative: str=..., oversampling: int=..., blend: str=...) -> Rasterization:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+
+    @property
+    def samples(self) -> int:
+        ...
+
+    @property
+    def conservative(self) -> str:
+        ...
+
+    @property
+    def oversampling(self) -> int:
+        ...
+
+    @property
+    def blend(self) -> str:
+        ...
 class SurfaceSampling:
     """Uniform samples over every triangle, averaged in the cell they fall into."""
     description: ClassVar[dict[str, Any]]
@@ -1644,7 +1710,7 @@ def vector_bytes() -> int:
     """
     Bytes of the widest vectors of this machine.
     """
-def voxelize(technique: ExactOverlap | SurfaceSampling, scene: Scene, domain: Domain) -> VoxelGrid:
+def voxelize(technique: ExactOverlap | SurfaceSampling | Rasterization | Tessellation, scene: Scene, domain: Domain) -> VoxelGrid:
     """
     The voxels of the scene's surface.
     """

@@ -9,8 +9,10 @@
 #include <variant>
 
 #include "voxels/voxelize/exact_overlap.h"
+#include "voxels/voxelize/rasterization.h"
 #include "voxels/voxelize/surface_sampling.h"
+#include "voxels/voxelize/tessellation.h"
 
 namespace interreflect {
-using Voxelize = std::variant<ExactOverlap, SurfaceSampling>;
+using Voxelize = std::variant<ExactOverlap, SurfaceSampling, Rasterization, Tessellation>;
 }

@@ -64,6 +64,12 @@ class Store {
     std::size_t used_ = 0;
 };
 
+/// Distance of a colour from grey, relative to its brightness [Doghramachi 2013, listing of the voxelization].
+float contrast_of(const vec3& colour) {
+    constexpr float root_2 = 1.41421356f;
+    return glm::length(vec2(colour.r - colour.g, colour.r - colour.b)) / (root_2 + colour.r + colour.g + colour.b);
+}
+
 /// What has been merged into one voxel so far.
 struct Voxel {
     float area = 0, total = 0;
@@ -71,8 +77,17 @@ struct Voxel {
     // The largest part of a triangle, the first of equals, among those that face as the first does, and among the others.
     const Contribution* largest[2] = {nullptr, nullptr};
     float largest_area[2] = {0, 0};
-    vec3 facing{0};  // of the first
+    vec3 facing{0};                           // of the first
+    const Contribution* strongest = nullptr;  // of the greatest contrast, the first of equals; Blend::max alone
+    float contrast = -1.0f;
 
+    void compare_contrast(const Contribution& c) {
+        if (!(c.area > 0.0f)) return;
+        const float found = contrast_of(c.albedo / c.area);
+        if (!(found > contrast)) return;
+        contrast = found;
+        strongest = &c;
+    }
     void add(const Contribution& c) {
         total += c.total;
         area += c.area;
@@ -109,13 +124,14 @@ void write_voxel(const Voxel& voxel, std::uint32_t cell, std::size_t i, VoxelGri
     const float share = 1.0f / voxel.area;
     const vec3 centre = domain.linear_centre(cell);
     grid.cell[i] = cell;
-    grid.albedo[i] = voxel.albedo * share;
+    grid.albedo[i] = voxel.strongest != nullptr ? voxel.strongest->albedo / voxel.strongest->area : voxel.albedo * share;
     grid.emission[i] = voxel.emission * share;
     grid.position[i] = domain.from_linear(centre + voxel.position * share);
     grid.opacity[i] = voxel.total > voxel.area ? voxel.area / voxel.total : 1.0f;
     // Opposite sides that cancel leave rounding only: 1e-3 of the area is no direction.
     const float length = glm::length(voxel.normal);
     grid.normal[i] = length > 1e-3f * voxel.area ? voxel.normal / length : vec3(0);
+    if (voxel.strongest != nullptr) grid.normal[i] = voxel.strongest->normal;
     write_points(voxel, centre, i, grid);
 }
 
@@ -144,7 +160,7 @@ struct Pieces {
     std::vector<Sorted<EmissionContribution>> emission;
 };
 
-void merge_bucket(std::size_t bucket, const Buckets& buckets, const CellMarks& marks, const Pieces& pieces,
+void merge_bucket(std::size_t bucket, const Buckets& buckets, const CellMarks& marks, const Pieces& pieces, Blend blend,
                   std::vector<Voxel>& voxels, VoxelGrid& grid) {
     const std::uint64_t begin = static_cast<std::uint64_t>(bucket) << buckets.shift;
     const std::uint64_t end = std::min<std::uint64_t>(begin + (std::uint64_t{1} << buckets.shift), grid.domain.cell_count());
@@ -153,7 +169,11 @@ void merge_bucket(std::size_t bucket, const Buckets& buckets, const CellMarks& m
     voxels.assign(marks.before(end) - first, Voxel{});
     for (const auto& piece : pieces.surface)
         for (const Contribution& c : piece.bucket(bucket))
-            if (marks.marked(c.cell)) voxels[marks.before(c.cell) - first].add(c);
+            if (marks.marked(c.cell)) {
+                Voxel& voxel = voxels[marks.before(c.cell) - first];
+                voxel.add(c);
+                if (blend == Blend::max) voxel.compare_contrast(c);
+            }
     for (const auto& piece : pieces.emission)
         for (const EmissionContribution& e : piece.bucket(bucket)) voxels[marks.before(e.cell) - first].emission += e.emission;
     std::size_t i = 0;
@@ -175,7 +195,7 @@ void CellMarks::number() {
     first_.back() = sum;
 }
 
-VoxelGrid voxelize_triangles(const Scene& scene, const Domain& domain, Handing handing, const EmitTriangle& emit) {
+VoxelGrid voxelize_triangles(const Scene& scene, const Domain& domain, Handing handing, const EmitTriangle& emit, Blend blend) {
     const auto ranges = triangle_ranges(*scene.geometry);
     const Buckets buckets(domain.cell_count());
     CellMarks marks(domain.cell_count());
@@ -201,7 +221,7 @@ VoxelGrid voxelize_triangles(const Scene& scene, const Domain& domain, Handing h
     grid.domain = domain;
     resize(grid, marks.count());
     oneapi::tbb::enumerable_thread_specific<std::vector<Voxel>> scratch;
-    parallel_pieces(buckets.count, [&](std::size_t b) { merge_bucket(b, buckets, marks, pieces, scratch.local(), grid); });
+    parallel_pieces(buckets.count, [&](std::size_t b) { merge_bucket(b, buckets, marks, pieces, blend, scratch.local(), grid); });
     for (const Worker& worker : workers) grid.counts.samples += worker.samples;
     grid.counts.voxels = grid.size();
     return grid;

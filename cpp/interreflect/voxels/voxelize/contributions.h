@@ -9,8 +9,13 @@
 
 namespace interreflect {
 
+/// How a voxel's albedo and normal come of its contributions: averaged by area, or those of the contribution whose albedo has the
+/// greatest contrast [Doghramachi 2013], the first of equals.
+enum class Blend { mean, max };
+
 /// Calls `emit` for every triangle of the scene and merges what it adds to the sink.
 using EmitTriangle = std::function<void(const VoxelTriangle&, ContributionSink&)>;
-VoxelGrid voxelize_triangles(const Scene& scene, const Domain& domain, Handing handing, const EmitTriangle& emit);
+VoxelGrid voxelize_triangles(const Scene& scene, const Domain& domain, Handing handing, const EmitTriangle& emit,
+                             Blend blend = Blend::mean);
 
 }  // namespace interreflect

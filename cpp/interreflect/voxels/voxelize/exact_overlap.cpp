@@ -5,6 +5,7 @@
 
 #include "math/sampling.h"
 #include "voxels/voxelize/contributions.h"
+#include "voxels/voxelize/polygon.h"
 
 namespace interreflect {
 namespace {
@@ -28,36 +29,13 @@ bool overlaps(const std::array<vec3, 3>& p, const vec3& normal) {
     return true;
 }
 
-/// A convex polygon: a triangle cut by six planes has at most nine corners.
-struct Polygon {
-    std::array<vec3, 10> corner;
-    int count = 0;
-};
-
-/// The part of a polygon on the lower side of position[axis] * sign = 0.5.
-Polygon cut(const Polygon& polygon, int axis, float sign) {
-    Polygon inside;
-    for (int i = 0; i < polygon.count; ++i) {
-        const vec3& a = polygon.corner[i];
-        const vec3& b = polygon.corner[(i + 1) % polygon.count];
-        const float da = 0.5f - sign * a[axis], db = 0.5f - sign * b[axis];
-        if (da >= 0.0f) inside.corner[inside.count++] = a;
-        if ((da > 0.0f && db < 0.0f) || (da < 0.0f && db > 0.0f)) {
-            vec3 crossing = a + (b - a) * (da / (da - db));
-            crossing[axis] = sign * 0.5f;
-            inside.corner[inside.count++] = crossing;
-        }
-    }
-    return inside;
-}
-
 /// The triangle's part in the half-open cell [-0.5, 0.5)^3; empty where it only touches the upper faces.
 Polygon clip(const std::array<vec3, 3>& p) {
     Polygon polygon;
     polygon.count = 3;
     std::copy(p.begin(), p.end(), polygon.corner.begin());
     for (int axis = 0; axis < 3 && polygon.count > 0; ++axis) {
-        polygon = cut(cut(polygon, axis, 1.0f), axis, -1.0f);
+        polygon = between(polygon, axis, -0.5f, 0.5f);
         bool on_upper_face = true;
         for (int i = 0; i < polygon.count; ++i) on_upper_face &= polygon.corner[i][axis] >= 0.5f;
         if (on_upper_face) polygon.count = 0;

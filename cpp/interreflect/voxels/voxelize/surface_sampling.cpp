@@ -1,32 +1,11 @@
 #include "voxels/voxelize/surface_sampling.h"
 
 #include <algorithm>
-#include <stdexcept>
 
-#include "voxels/voxelize/contributions.h"
-#include "voxels/voxelize/nearest_texel.h"
+#include "voxels/voxelize/appearance.h"
 
 namespace interreflect {
 namespace {
-
-constexpr float most_voxels = 0x1p20f;
-
-/// What a triangle looks like at samples that stand for `area` each.
-struct Appearance {
-    const VoxelTriangle& triangle;
-    NearestTexel albedo_map, emission_map;
-
-    Appearance(const VoxelTriangle& t, float area) : triangle(t) {
-        if (t.albedo_map != nullptr) albedo_map.choose(*t.albedo_map, t.level(*t.albedo_map, area));
-        if (t.emission_map != nullptr) emission_map.choose(*t.emission_map, t.level(*t.emission_map, area));
-    }
-    [[gnu::always_inline]] vec3 albedo(const vec2& uv) const {
-        return albedo_map.chosen() ? triangle.material->albedo * albedo_map.at(uv) : triangle.material->albedo;
-    }
-    [[gnu::always_inline]] vec3 emission(const vec2& uv) const {
-        return emission_map.chosen() ? triangle.material->emission * emission_map.at(uv) : triangle.material->emission;
-    }
-};
 
 /// The part of start + along * u, u in [0, 1], that may lie in a box of `cells`.
 vec2 part_inside(const vec3& start, const vec3& along, const vec3& cells) {
@@ -54,14 +33,13 @@ void sample_triangle(const VoxelTriangle& t, const vec3& cells, float spacing, C
     const vec3 p0 = t.corner[base], p1 = t.corner[(base + 1) % 3], p2 = t.corner[(base + 2) % 3];
     const vec2 t0 = t.texcoord[base], t1 = t.texcoord[(base + 1) % 3], t2 = t.texcoord[(base + 2) % 3];
     const float height = 2.0f * t.area / longest;
-    if (!(longest < most_voxels))
-        throw std::invalid_argument("voxelize: a triangle is longer than 2^20 voxels: the domain's voxels are too small");
+    refuse_longer_than_most_voxels(longest);
     const int rows = std::max(1, static_cast<int>(std::ceil(height / spacing)));
     const bool uniform = t.uniform();
     const Appearance look(t, std::min(t.area, spacing * spacing));
     if (rows == 1 && 0.5f * longest <= spacing) {
         const vec2 uv = (t0 + t1) * 0.25f + t2 * 0.5f;
-        const bool solid = t.mask == nullptr || t.mask->solid(uv);
+        const bool solid = look.solid(uv);
         sink.add_only((p0 + p1) * 0.25f + p2 * 0.5f, solid, uniform ? t.material->albedo : look.albedo(uv),
                       uniform ? t.material->emission : look.emission(uv));
         return;
@@ -87,7 +65,7 @@ void sample_triangle(const VoxelTriangle& t, const vec3& cells, float spacing, C
                 continue;
             }
             const vec2 uv = uv_start + uv_along * u;
-            const bool solid = t.mask == nullptr || t.mask->solid(uv);
+            const bool solid = look.solid(uv);
             sink.add(position, area, solid, look.albedo(uv), look.emission(uv));
         }
     }

@@ -1,0 +1,116 @@
+#include "voxels/voxelize/tessellation.h"
+
+#include <algorithm>
+#include <array>
+
+#include "voxels/voxelize/appearance.h"
+#include "voxels/voxelize/tessellation_pattern.h"
+
+namespace interreflect {
+namespace {
+
+// A triangle's longest edge over its narrowest altitude: 2 in half a square, which halving its longest edge keeps.
+constexpr float most_stretched = 2.5f;
+
+/// A triangle, or what splitting left of it.
+struct Patch {
+    std::array<vec3, 3> corner;
+    std::array<vec2, 3> texcoord;
+    float area;
+};
+
+class Tessellator {
+  public:
+    Tessellator(const Tessellation& technique, const VoxelTriangle& t, const vec3& cells, ContributionSink& sink)
+        : triangle_(t),
+          cells_(cells),
+          spacing_(static_cast<float>(technique.spacing)),
+          most_(technique.max_level),
+          split_(technique.split),
+          look_(t, std::min(t.area, spacing_ * spacing_)),
+          sink_(sink) {}
+
+    void tessellate(const Patch& patch) {
+        if (triangle_.crosses && outside(patch)) return;
+        std::array<float, 3> length;
+        for (int i = 0; i < 3; ++i) length[i] = glm::distance(patch.corner[i], patch.corner[(i + 1) % 3]);
+        const auto longest = static_cast<int>(std::max_element(length.begin(), length.end()) - length.begin());
+        const float altitude = 2.0f * patch.area / *std::min_element(length.begin(), length.end());
+        refuse_longer_than_most_voxels(length[longest]);
+        if (split_ && must_split(patch, length[longest])) {
+            halve(patch, longest);
+            return;
+        }
+        TessellationLevels levels;
+        for (int i = 0; i < 3; ++i) levels.outer[i] = level(length[i]);
+        levels.inner = level(altitude);
+        emit(patch, levels);
+    }
+
+  private:
+    bool outside(const Patch& patch) const {
+        const vec3 lower = glm::min(glm::min(patch.corner[0], patch.corner[1]), patch.corner[2]);
+        const vec3 upper = glm::max(glm::max(patch.corner[0], patch.corner[1]), patch.corner[2]);
+        return glm::any(glm::lessThan(upper, vec3(0))) || glm::any(glm::greaterThan(lower, cells_));
+    }
+    int level(float length) const {
+        return static_cast<int>(std::clamp(std::ceil(length / spacing_), 1.0f, static_cast<float>(most_)));
+    }
+    bool must_split(const Patch& patch, float longest) const {
+        if (std::ceil(longest / spacing_) > static_cast<float>(most_)) return true;
+        // The vertices inside, (3/4) (altitude / spacing)^2 of them, lie in rows as long as the longest edge: too many where a
+        // triangle is narrow, and too far apart where it is obtuse.
+        const float narrowest = 2.0f * patch.area / longest;
+        return longest > most_stretched * std::max(narrowest, spacing_);
+    }
+    void halve(const Patch& patch, int edge) {
+        const int next = (edge + 1) % 3, opposite = (edge + 2) % 3;
+        const vec3 corner = 0.5f * (patch.corner[edge] + patch.corner[next]);
+        const vec2 texcoord = 0.5f * (patch.texcoord[edge] + patch.texcoord[next]);
+        const auto half = [&](int kept) {
+            return Patch{{patch.corner[opposite], patch.corner[kept], corner},
+                         {patch.texcoord[opposite], patch.texcoord[kept], texcoord},
+                         0.5f * patch.area};
+        };
+        tessellate(half(edge));
+        tessellate(half(next));
+    }
+    void emit(const Patch& patch, const TessellationLevels& levels) {
+        const vec3 cell = glm::floor(patch.corner[0]);
+        if (cell == glm::floor(patch.corner[1]) && cell == glm::floor(patch.corner[2])) {
+            add(patch, vec3(1.0f / 3.0f), patch.area);
+            return;
+        }
+        tessellation_rows(levels, [&](const vec3& start, const vec3& along, int count, float share) {
+            for (int j = 0; j < count; ++j) add(patch, start + along * static_cast<float>(j), share * patch.area);
+        });
+    }
+    void add(const Patch& patch, const vec3& weights, float area) {
+        const vec3 position = patch.corner[0] * weights.x + patch.corner[1] * weights.y + patch.corner[2] * weights.z;
+        if (triangle_.uniform()) {
+            sink_.add(position, area, true, triangle_.material->albedo, triangle_.material->emission);
+            return;
+        }
+        const vec2 uv = patch.texcoord[0] * weights.x + patch.texcoord[1] * weights.y + patch.texcoord[2] * weights.z;
+        sink_.add(position, area, look_.solid(uv), look_.albedo(uv), look_.emission(uv));
+    }
+
+    const VoxelTriangle& triangle_;
+    vec3 cells_;
+    float spacing_;
+    int most_;
+    bool split_;
+    Appearance look_;
+    ContributionSink& sink_;
+};
+
+}  // namespace
+
+VoxelGrid voxelize(const Tessellation& technique, const Scene& scene, const Domain& domain) {
+    return voxelize_triangles(scene, domain, Handing::at_once, [&, cells = vec3(domain.cells)](const VoxelTriangle& t, ContributionSink& sink) {
+        Tessellator(technique, t, cells, sink)
+            .tessellate({{t.corner[0], t.corner[1], t.corner[2]}, {t.texcoord[0], t.texcoord[1], t.texcoord[2]}, t.area});
+    });
+}
+
+}  // namespace interreflect
