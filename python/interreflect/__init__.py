@@ -22,6 +22,7 @@ _HOMES = {
     **dict.fromkeys(("Profile", "Stage"), "profile"),
     **dict.fromkeys(("trace_gbuffer", "voxelize", "light_voxels", "prefilter", "march", "glossy", "shadow", "sky", "shade"), "stages"),
     **dict.fromkeys(("techniques", "exact"), "stages"),
+    **dict.fromkeys(("VoxelCoverage", "voxel_coverage"), "coverage"),
     "voxel_view": "cubes",
     **dict.fromkeys(("Study", "sweep"), "study.study"),
     "run": "study.run",
@@ -74,6 +75,8 @@ if TYPE_CHECKING:
     from interreflect import scenes as scenes
     from interreflect import stability as stability
     from interreflect._core import Grid as Grid
+    from interreflect.coverage import VoxelCoverage as VoxelCoverage
+    from interreflect.coverage import voxel_coverage as voxel_coverage
     from interreflect.cubes import voxel_view as voxel_view
     from interreflect.errors import SceneError as SceneError
     from interreflect.frame import Frame as Frame

@@ -586,6 +586,12 @@ class VoxelGrid:
         """
 
     @property
+    def area(self) -> typing.Any:
+        """
+        (n,): area of the solid surface inside, in faces of an unwarped voxel.
+        """
+
+    @property
     def bytes(self) -> int:
         """
         Memory the arrays hold.

@@ -368,7 +368,7 @@ def test_prefiltered_pyramids_have_the_same_bits_at_one_and_two_threads(coverage
 def test_bytes_are_those_of_the_arrays(coverage):
     lit = lit_of(ir.TracedLighting(), scene_of(floor(), box()), 16)
     grid = lit.voxels
-    arrays = (grid.cell, grid.albedo, grid.normal, grid.emission, grid.position, grid.opacity)
+    arrays = (grid.cell, grid.albedo, grid.normal, grid.emission, grid.position, grid.opacity, grid.area)
     assert grid.bytes == sum(a.nbytes for a in arrays) + len(grid) * 64  # 64: the points where both sides are lit
     assert lit.bytes == lit.radiance.nbytes
     pyramid = ir.prefilter(coverage, lit)

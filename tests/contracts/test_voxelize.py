@@ -1,4 +1,4 @@
-"""What every technique of `voxelize` owes, and the two that there are."""
+"""What every technique of `voxelize` owes."""
 
 from __future__ import annotations
 
@@ -12,12 +12,18 @@ import interreflect as ir
 from interreflect import _core
 from interreflect.scenes.texture import Mask
 
-TECHNIQUES = _core.stages["voxelize"]["techniques"]
+# Every technique as it comes, and knobs that choose other code.
+TECHNIQUES = {cls.__name__: cls() for cls in _core.stages["voxelize"]["techniques"]}
+KNOBS = {
+    "Rasterization-full": ir.Rasterization(conservative="full"),
+    "Rasterization-oversampled": ir.Rasterization(samples=8, oversampling=3),
+    "Tessellation-fine": ir.Tessellation(spacing=0.25, max_level=16),
+}
 
 
-@pytest.fixture(params=TECHNIQUES, ids=lambda cls: cls.__name__)
+@pytest.fixture(params=[*TECHNIQUES, *KNOBS])
 def technique(request):
-    return request.param()
+    return {**TECHNIQUES, **KNOBS}[request.param]
 
 
 def voxels_of(technique, scene, resolution=16, domain=None):

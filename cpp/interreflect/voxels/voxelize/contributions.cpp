@@ -128,6 +128,7 @@ void write_voxel(const Voxel& voxel, std::uint32_t cell, std::size_t i, VoxelGri
     grid.emission[i] = voxel.emission * share;
     grid.position[i] = domain.from_linear(centre + voxel.position * share);
     grid.opacity[i] = voxel.total > voxel.area ? voxel.area / voxel.total : 1.0f;
+    grid.area[i] = voxel.area;
     // Opposite sides that cancel leave rounding only: 1e-3 of the area is no direction.
     const float length = glm::length(voxel.normal);
     grid.normal[i] = length > 1e-3f * voxel.area ? voxel.normal / length : vec3(0);
@@ -142,6 +143,7 @@ void resize(VoxelGrid& grid, std::size_t size) {
     grid.emission = Buffer<vec3>(size);
     grid.position = Buffer<vec3>(size);
     grid.opacity = Buffer<float>(size);
+    grid.area = Buffer<float>(size);
     grid.points = Buffer<VoxelPoint>(size);
     grid.backs = Buffer<VoxelPoint>(size);
 }

@@ -12,6 +12,9 @@ namespace {
 // A triangle's longest edge over its narrowest altitude: 2 in half a square, which halving its longest edge keeps.
 constexpr float most_stretched = 2.5f;
 
+// Of the way to the triangle's centre, where a vertex looks up its texels.
+constexpr float inwards = 1e-3f;
+
 /// A triangle, or what splitting left of it.
 struct Patch {
     std::array<vec3, 3> corner;
@@ -91,7 +94,9 @@ class Tessellator {
             sink_.add(position, area, true, triangle_.material->albedo, triangle_.material->emission);
             return;
         }
-        const vec2 uv = patch.texcoord[0] * weights.x + patch.texcoord[1] * weights.y + patch.texcoord[2] * weights.z;
+        // Inside the triangle: on its border, a picture that repeats may show its other end.
+        const vec3 inside = weights * (1.0f - inwards) + inwards / 3.0f;
+        const vec2 uv = patch.texcoord[0] * inside.x + patch.texcoord[1] * inside.y + patch.texcoord[2] * inside.z;
         sink_.add(position, area, look_.solid(uv), look_.albedo(uv), look_.emission(uv));
     }
 
