@@ -724,10 +724,10 @@ class Tessellation:
     description: ClassVar[dict[str, Any]]
     stages: ClassVar[tuple[str, ...]]
 
-    def __init__(self, *, spacing: float=..., max_level: int=..., split: bool=...) -> None:
+    def __init__(self, *, spacing: float=..., max_level: int=..., split: bool=..., levels: str=...) -> None:
         ...
 
-    def replace(self, *, spacing: float=..., max_level: int=..., split: bool=...) -> Tessellation:
+    def replace(self, *, spacing: float=..., max_level: int=..., split: bool=..., levels: str=...) -> Tessellation:
         ...
 
     def asdict(self) -> dict[str, Any]:
@@ -749,6 +749,10 @@ class Tessellation:
 
     @property
     def split(self) -> bool:
+        ...
+
+    @property
+    def levels(self) -> str:
         ...
 class Rasterization:
     """Every triangle rasterized along its dominant axis; a fragment is put into the cell it falls into."""

@@ -61,14 +61,13 @@ def voxel_coverage(voxels: _core.VoxelGrid, exact: _core.VoxelGrid, closed: floa
 
 
 def _open_crossings(exact: _core.VoxelGrid, there: NDArray[np.bool_], axis: int, closed: float) -> NDArray[np.bool_]:
-    at = exact.coordinates
-    order = np.lexsort((at[:, axis], at[:, axis - 1], at[:, axis - 2]))
-    sorted_at = at[order]
-    step = np.diff(sorted_at, axis=0)
-    follows = (step[:, axis] == 1) & (step[:, axis - 1] == 0) & (step[:, axis - 2] == 0)
+    at, grid = exact.coordinates, exact.cell // np.prod(exact.domain.cells)  # nested grids: one after the other
+    order = np.lexsort((at[:, axis], at[:, axis - 1], at[:, axis - 2], grid))
+    step = np.diff(np.column_stack([at, grid])[order].astype(np.int64), axis=0)
+    follows = (step[:, axis] == 1) & (step[:, axis - 1] == 0) & (step[:, axis - 2] == 0) & (step[:, 3] == 0)
     crossing = np.concatenate([[0], np.cumsum(~follows)])
     count = int(crossing[-1]) + 1
-    seen = np.bincount(crossing, (exact.area * np.abs(exact.normal[:, axis]))[order], count)
+    seen = np.bincount(crossing, (exact.area * np.abs(exact.normal[:, axis]) * 0.25**grid)[order], count)
     blocked = np.bincount(crossing, there[order], count) > 0
     result = np.zeros(len(exact), bool)
     result[order] = (~blocked & (seen >= closed))[crossing]

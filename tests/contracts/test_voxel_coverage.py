@@ -160,3 +160,26 @@ def test_the_extremes_of_the_knobs_work(technique):
     exact = ir.voxelize(ir.ExactOverlap(), triangles(7), DOMAIN)
     grid = ir.voxelize(technique, triangles(7), DOMAIN)
     assert 0 < len(grid) <= 1.2 * len(exact) and np.isfinite(grid.position).all()
+
+
+def test_a_fragment_grid_of_the_voxels_resolution_cracks_where_the_warp_is_steep_and_tessellation_does_not():
+    # Claim F9: a steep warp makes voxels narrower than the pixels near the camera; more pixels close the cracks.
+    wall = scene_of(
+        quad([[-1, -0.9, -0.7], [1, -1, -0.8], [1, 1, 0.7], [-1, 0.9, 0.8]]),
+        cameras={"eye": ir.Camera(position=(0, 0, 0.6), target=(0, 0, 0), fov_x=60, size=(64, 64))},
+    )
+    domain = ir.Grid(resolution=48, warp=ir.CubicSpline(alpha=2.5)).place(wall)
+    cracked = coverage(ir.Rasterization(), wall, domain)
+    assert cracked.hole_share > 0.02
+    assert coverage(ir.Rasterization(oversampling=3), wall, domain).holes == 0
+    assert coverage(ir.Tessellation(), wall, domain).holes == 0
+    # As printed, levels come of the uniform voxel size.
+    assert coverage(ir.Tessellation(spacing=1.0, levels="uniform"), wall, domain).holes > 0
+
+
+def test_nested_grids_are_covered_in_one_pass():
+    scene = triangles(4).replace(cameras={"eye": ir.Camera(position=(0.1, 0.2, 0.6), target=(0, 0, 0), fov_x=60, size=(64, 64))})
+    domain = ir.Grid(resolution=24, cascades=3).place(scene)
+    for technique in (ir.Rasterization(samples=8, oversampling=2), ir.Tessellation(), ir.Tessellation(levels="uniform")):
+        assert coverage(technique, scene, domain).holes == 0, technique
+    assert coverage(ir.Rasterization(conservative="full"), scene, domain).missing_share < 0.01

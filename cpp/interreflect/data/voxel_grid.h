@@ -30,7 +30,7 @@ struct VoxelGrid {
     Buffer<vec3> emission;       // mean radiance leaving the front side; apart from `albedo` and never marched by default
     Buffer<vec3> position;       // mean of the solid samples, world space
     Buffer<float> opacity;       // share of samples that are solid: 1 but for masks
-    Buffer<float> area;          // of the solid surface inside, in faces of an unwarped voxel
+    Buffer<float> area;          // of the solid surface inside, in faces of an unwarped voxel of the finest grid
     Buffer<VoxelPoint> points;   // where the front of voxel i is lit: points[i]
     Buffer<VoxelPoint> backs;    // and its back: the same surface's, or another one that faces away, as a slab's underside
     Counts counts;

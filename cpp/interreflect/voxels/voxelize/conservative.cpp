@@ -139,24 +139,20 @@ class Conservative {
 
 }  // namespace
 
-void rasterize_conservatively(const VoxelTriangle& t, const ivec3& cells, int oversampling, std::span<const vec2> samples,
+void rasterize_conservatively(const VoxelTriangle& t, const LinearBox& box, int oversampling, std::span<const vec2> samples,
                               ContributionSink& sink) {
-    const Projected p(t, cells, oversampling);
+    const Projected p(t, box, oversampling);
     refuse_longer_than_most_voxels(max_component(p.upper - p.lower) * p.voxels);
     Conservative fragments(t, p, samples, sink);
     Polygon whole;
     whole.count = 3;
     std::copy(p.corner, p.corner + 3, whole.corner.begin());
-    const auto first_of = [](float lowest) { return static_cast<int>(std::max(lowest, 0.0f)); };
-    const auto last_of = [](float highest, int pixels) {
-        return static_cast<int>(std::min(highest, static_cast<float>(pixels - 1)));
-    };
-    for (int v = first_of(p.lower.y); v <= last_of(p.upper.y, p.pixels.y); ++v) {
+    for (int v = p.first_of(1, p.lower.y); v <= p.last_of(1, p.upper.y); ++v) {
         const Polygon row = between(whole, 1, static_cast<float>(v), static_cast<float>(v + 1));
         if (row.count < 3) continue;
         float left = row.corner[0].x, right = left;
         for (int i = 1; i < row.count; ++i) left = std::min(left, row.corner[i].x), right = std::max(right, row.corner[i].x);
-        for (int u = first_of(left); u <= last_of(right, p.pixels.x); ++u) {
+        for (int u = p.first_of(0, left); u <= p.last_of(0, right); ++u) {
             const Polygon part = between(row, 0, static_cast<float>(u), static_cast<float>(u + 1));
             if (part.count >= 3) fragments.pixel(u, v, part);
         }

@@ -5,6 +5,7 @@ namespace interreflect {
 void ContributionSink::begin_placed() {
     const VoxelTriangle& t = *triangle_;
     origin_ = t.linear[0];
+    linear_area_ = handing_ == Handing::grids ? static_cast<float>(1 << (2 * t.cascade)) : 1.0f;
     if (handing_ != Handing::pieces) return;
     along_[0] = t.linear[1] - t.linear[0];
     along_[1] = t.linear[2] - t.linear[0];
@@ -28,14 +29,14 @@ void ContributionSink::place_part(Contribution& c) const {
     const VoxelTriangle& t = *triangle_;
     if (handing_ != Handing::pieces) {
         c.position += (origin_ - domain_.linear_centre(c.cell)) * c.area;
-        return;
-    }
-    const vec3 first = vec3(domain_.coordinates(c.cell)) + 0.5f - t.corner[0];
-    c.cell += domain_.cell(ivec3(0), t.cascade);
-    if (c.area > 0.0f) {
-        const vec3 q = first + c.position / c.area;
-        const vec3 p = origin_ + along_[0] * glm::dot(to_weights_[0], q) + along_[1] * glm::dot(to_weights_[1], q);
-        c.position = (p - domain_.linear_centre(c.cell)) * c.area;
+    } else {
+        const vec3 first = vec3(domain_.coordinates(c.cell)) + 0.5f - t.corner[0];
+        c.cell += domain_.cell(ivec3(0), t.cascade);
+        if (c.area > 0.0f) {
+            const vec3 q = first + c.position / c.area;
+            const vec3 p = origin_ + along_[0] * glm::dot(to_weights_[0], q) + along_[1] * glm::dot(to_weights_[1], q);
+            c.position = (p - domain_.linear_centre(c.cell)) * c.area;
+        }
     }
     // Areas weigh the parts of a cell against each other: as in space, not as in the warped grid.
     c.position *= linear_area_;

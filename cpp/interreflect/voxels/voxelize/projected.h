@@ -1,6 +1,6 @@
 /// A triangle projected along its dominant axis onto a grid of pixels.
 #pragma once
-#include "voxels/voxelize/contributions.h"
+#include "voxels/voxelize/linear_box.h"
 
 namespace interreflect {
 
@@ -13,9 +13,9 @@ struct Projected {
     vec3 lower, upper;  // of the corners
     float depth_start;  // depth = depth_start + dot(depth_slope, (u, v) - (u, v) of the first corner)
     vec2 depth_slope;
-    ivec3 pixels;  // of the domain: along u, v and depth
+    ivec3 first, end;  // pixels of the box: along u, v and depth
 
-    Projected(const VoxelTriangle& t, const ivec3& cells, int oversampling) {
+    Projected(const VoxelTriangle& t, const LinearBox& box, int oversampling) {
         const vec3 n = glm::abs(t.normal);
         depth_axis = n.x >= n.y && n.x >= n.z ? 0 : n.y >= n.z ? 1 : 2;
         u_axis = (depth_axis + 1) % 3;
@@ -29,10 +29,21 @@ struct Projected {
         slope_area = voxels * voxels / std::fabs(along);
         depth_slope = vec2(t.normal[u_axis], t.normal[v_axis]) * (-1.0f / along);
         depth_start = corner[0].z;
-        pixels = ivec3(cells[u_axis], cells[v_axis], cells[depth_axis]) * oversampling;
+        for (int i = 0; i < 3; ++i) {
+            const int axis = (depth_axis + 1 + i) % 3;
+            first[i] = static_cast<int>(std::floor(box.lower[axis] * scale));
+            end[i] = static_cast<int>(std::ceil(box.upper[axis] * scale));
+        }
     }
     float depth(float u, float v) const {
         return depth_start + depth_slope.x * (u - corner[0].x) + depth_slope.y * (v - corner[0].y);
+    }
+    /// Rows and columns of the box that the values between `lowest` and `highest` reach along u (0) or v (1).
+    int first_of(int axis, float lowest) const {
+        return static_cast<int>(std::max(std::floor(lowest), static_cast<float>(first[axis])));
+    }
+    int last_of(int axis, float highest) const {
+        return static_cast<int>(std::min(std::floor(highest), static_cast<float>(end[axis] - 1)));
     }
     /// Of a place on the grid of pixels, in voxels from the domain's corner.
     vec3 position(float u, float v, float d) const {

@@ -32,7 +32,7 @@ struct Edges {
         }
     }
     /// Pixels of the row that contains `v` whose sample, at `u` in the pixel, is covered. Half-open: [lowest, highest) edges.
-    Span covered(float v, float u, int pixels) const {
+    Span covered(float v, float u, const Projected& p) const {
         float left = 0, right = 0;
         bool found = false;
         for (int i = 0; i < 3; ++i) {
@@ -43,9 +43,9 @@ struct Edges {
             found = true;
         }
         if (!found) return {};
-        const auto limit = static_cast<float>(pixels);
-        return {static_cast<int>(std::clamp(std::ceil(left - u), 0.0f, limit)),
-                static_cast<int>(std::clamp(std::ceil(right - u), 0.0f, limit))};
+        const auto first = static_cast<float>(p.first.x), end = static_cast<float>(p.end.x);
+        return {static_cast<int>(std::clamp(std::ceil(left - u), first, end)),
+                static_cast<int>(std::clamp(std::ceil(right - u), first, end))};
     }
 };
 
@@ -107,18 +107,17 @@ class Fragments {
     ContributionSink& sink_;
 };
 
-void rasterize(const VoxelTriangle& t, const ivec3& cells, int oversampling, std::span<const vec2> samples,
+void rasterize(const VoxelTriangle& t, const LinearBox& box, int oversampling, std::span<const vec2> samples,
                ContributionSink& sink) {
-    const Projected p(t, cells, oversampling);
+    const Projected p(t, box, oversampling);
     refuse_longer_than_most_voxels(max_component(p.upper - p.lower) * p.voxels);
     const Edges edges(p);
-    const int first = static_cast<int>(std::max(p.lower.y, 0.0f));
-    const int last = static_cast<int>(std::min(p.upper.y, static_cast<float>(p.pixels.y - 1)));
     Span covered[most_samples];
     Fragments fragments(t, p, samples, sink);
-    for (int v = first; v <= last; ++v) {
+    const int last = p.last_of(1, p.upper.y);
+    for (int v = p.first_of(1, p.lower.y); v <= last; ++v) {
         for (std::size_t s = 0; s < samples.size(); ++s)
-            covered[s] = edges.covered(static_cast<float>(v) + samples[s].y, samples[s].x, p.pixels.x);
+            covered[s] = edges.covered(static_cast<float>(v) + samples[s].y, samples[s].x, p);
         fragments.row(v, covered);
     }
 }
@@ -131,13 +130,14 @@ VoxelGrid voxelize(const Rasterization& technique, const Scene& scene, const Dom
         throw std::invalid_argument("Rasterization.samples must be 1, 2, 4 or 8, got " + std::to_string(technique.samples));
     const bool full = technique.conservative == "full";
     const Blend blend = technique.blend == "max" ? Blend::max : Blend::mean;
+    const LinearBox box(domain, Handing::grids);
     return voxelize_triangles(
         scene, domain, Handing::grids,
         [&, full](const VoxelTriangle& triangle, ContributionSink& sink) {
             if (full)
-                rasterize_conservatively(triangle, domain.cells, technique.oversampling, samples, sink);
+                rasterize_conservatively(triangle, box, technique.oversampling, samples, sink);
             else
-                rasterize(triangle, domain.cells, technique.oversampling, samples, sink);
+                rasterize(triangle, box, technique.oversampling, samples, sink);
         },
         blend);
 }

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "voxels/voxelize/appearance.h"
+#include "voxels/voxelize/linear_box.h"
 #include "voxels/voxelize/tessellation_pattern.h"
 
 namespace interreflect {
@@ -24,9 +25,9 @@ struct Patch {
 
 class Tessellator {
   public:
-    Tessellator(const Tessellation& technique, const VoxelTriangle& t, const vec3& cells, ContributionSink& sink)
+    Tessellator(const Tessellation& technique, const VoxelTriangle& t, const LinearBox& box, ContributionSink& sink)
         : triangle_(t),
-          cells_(cells),
+          box_(box),
           spacing_(static_cast<float>(technique.spacing)),
           most_(technique.max_level),
           split_(technique.split),
@@ -54,7 +55,7 @@ class Tessellator {
     bool outside(const Patch& patch) const {
         const vec3 lower = glm::min(glm::min(patch.corner[0], patch.corner[1]), patch.corner[2]);
         const vec3 upper = glm::max(glm::max(patch.corner[0], patch.corner[1]), patch.corner[2]);
-        return glm::any(glm::lessThan(upper, vec3(0))) || glm::any(glm::greaterThan(lower, cells_));
+        return glm::any(glm::lessThan(upper, box_.lower)) || glm::any(glm::greaterThan(lower, box_.upper));
     }
     int level(float length) const {
         return static_cast<int>(std::clamp(std::ceil(length / spacing_), 1.0f, static_cast<float>(most_)));
@@ -101,7 +102,7 @@ class Tessellator {
     }
 
     const VoxelTriangle& triangle_;
-    vec3 cells_;
+    const LinearBox& box_;
     float spacing_;
     int most_;
     bool split_;
@@ -112,8 +113,12 @@ class Tessellator {
 }  // namespace
 
 VoxelGrid voxelize(const Tessellation& technique, const Scene& scene, const Domain& domain) {
-    return voxelize_triangles(scene, domain, Handing::at_once, [&, cells = vec3(domain.cells)](const VoxelTriangle& t, ContributionSink& sink) {
-        Tessellator(technique, t, cells, sink)
+    // What lies flat in warped voxels has edges that are as long there as they look; whole triangles keep their uniform lengths.
+    const Handing handing = technique.levels == "warped" ? Handing::pieces : Handing::at_once;
+    const Domain one_grid{.cells = domain.cells};
+    const LinearBox box(handing == Handing::pieces ? one_grid : domain, handing);
+    return voxelize_triangles(scene, domain, handing, [&](const VoxelTriangle& t, ContributionSink& sink) {
+        Tessellator(technique, t, box, sink)
             .tessellate({{t.corner[0], t.corner[1], t.corner[2]}, {t.texcoord[0], t.texcoord[1], t.texcoord[2]}, t.area});
     });
 }

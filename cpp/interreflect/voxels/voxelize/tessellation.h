@@ -1,4 +1,6 @@
 #pragma once
+#include <string>
+
 #include "data/scene.h"
 #include "data/technique.h"
 #include "data/voxel_grid.h"
@@ -18,6 +20,7 @@ struct Tessellation {
     double spacing = 0.5;
     int max_level = 64;
     bool split = true;
+    std::string levels = "warped";
 
     bool operator==(const Tessellation&) const = default;
     static constexpr auto description = describe(
@@ -28,7 +31,12 @@ struct Tessellation {
         Param{"max_level", &Tessellation::max_level, "most parts that an edge is cut into; graphics processors have 64",
               Unit::none, between(1, 1024)},
         Param{"split", &Tessellation::split,
-              "split triangles that need a higher level, or are narrow; without, large triangles have holes"});
+              "split triangles that need a higher level, or are narrow; without, large triangles have holes"},
+        Param{"levels", &Tessellation::levels,
+              "warped: edges are measured in the voxels they pass, after triangles are cut where a warp bends them and where "
+              "nested "
+              "grids end; uniform: whole triangles in unwarped voxels of the finest grid, as printed",
+              Unit::none, one_of("warped|uniform")});
 };
 
 VoxelGrid voxelize(const Tessellation& technique, const Scene& scene, const Domain& domain);
