@@ -588,7 +588,7 @@ class VoxelGrid:
     @property
     def area(self) -> typing.Any:
         """
-        (n,): area of the solid surface inside, in faces of an unwarped voxel.
+        (n,): area of the solid surface inside, in faces of an unwarped voxel of the finest grid.
         """
 
     @property
