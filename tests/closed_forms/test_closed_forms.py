@@ -82,10 +82,11 @@ def test_only_spherical_harmonics_are_not_light():
     assert [row for row in range(1, 18) if ir.scenes.closed_form(row).transport != "light"] == [16]
 
 
+@pytest.mark.parametrize("light_voxels", [ir.TracedLighting(both_sides=True), ir.ShadowMapInjection(both_sides=True)], ids=repr)
 @pytest.mark.parametrize(("row", "knobs"), [(4, {}), (4, {"cap": 60}), (3, {"part": "indirect"})])
-def test_rays_through_voxels_gather_one_bounce_as_the_closed_form_says(row, knobs):
+def test_rays_through_voxels_gather_one_bounce_as_the_closed_form_says(row, knobs, light_voxels):
     case = ir.scenes.closed_form(row, **knobs)
-    method = ir.methods.VoxelConeTracing(march=ir.TracedRays(samples=16), share=ir.EveryPixel())
+    method = ir.methods.VoxelConeTracing(light_voxels=light_voxels, march=ir.TracedRays(samples=16), share=ir.EveryPixel())
     values = np.array([case.measure(method.render(case.scene, camera=case.camera, size=(64, 64), seed=seed)) for seed in range(6)])
     noise = values.std(ddof=1) / np.sqrt(len(values))
     # A voxel is 1/64 of the radius: light is stored up to half of that beside where it falls, 1/128 of its distance.

@@ -89,3 +89,23 @@ def test_texels_light_the_side_that_they_meet():
     assert not ir.light_voxels(ir.ShadowMapInjection(), scene, voxels).radiance.any()
     lit = ir.light_voxels(ir.ShadowMapInjection(both_sides=True), scene, voxels)
     assert not lit.radiance.any() and np.allclose(lit.back, 0.5, rtol=1e-4)
+
+
+GRIDS = {
+    "spline": ir.Grid(resolution=32, warp=ir.CubicSpline()),
+    "nested": ir.Grid(resolution=24, cascades=2),
+    "frustum": ir.Grid(resolution=32, warp=ir.Perspective()),
+}
+
+
+@pytest.mark.parametrize("grid", GRIDS)
+def test_warped_and_nested_voxels_are_lit_as_by_rays_and_keep_their_history(grid):
+    camera = ir.Camera(position=(0.3, 1.7, 2.9), target=(0, 0.4, 0), fov_x=70)
+    scene = furnished(LIGHTS["sun"]).replace(cameras={"view": camera})
+    voxels = ir.voxelize(ir.SurfaceSampling(), scene, GRIDS[grid].place(scene, camera))
+    traced = ir.light_voxels(ir.TracedLighting(), scene, voxels)
+    injected = ir.light_voxels(ir.ShadowMapInjection(size=1024), scene, voxels)
+    assert len(voxels) > 300 and np.abs(traced.radiance - injected.radiance).mean() < 0.03 * traced.radiance.mean()
+    kept = ir.light_voxels(ir.BlendHistory(weight=1.0), scene.replace(lights=[]), voxels, history=traced)
+    # A cell's centre lies where rounding may put it into its neighbour only where cells are as small as that.
+    assert (kept.radiance == traced.radiance).all(1).mean() > 0.999

@@ -153,6 +153,14 @@ def test_light_has_the_same_bits_at_one_and_two_threads_and_another_seed_has_oth
     assert not np.array_equal(results[0], ir.light_voxels(lighting, scene, voxels, 6).radiance)
 
 
+def test_a_scene_without_triangles_or_lights_or_both_has_voxels_without_light(lighting):
+    lights = [LIGHTS["sun"], LIGHTS["point"], LIGHTS["sky"]]
+    for scene in (scene_of(lights=lights), scene_of(), scene_of(floor())):
+        lit = lit_of(lighting, scene)
+        again = ir.light_voxels(lighting, scene, lit.voxels, history=ir.prefilter(ir.SurfaceCoverage(), lit))
+        assert len(lit.voxels) == len(again.radiance) and not lit.radiance.any() and not again.radiance.any()
+
+
 def test_more_samples_converge_to_the_same_light():
     scene = ir.scenes.cornell_box()
     few = np.mean([lit_of(ir.TracedLighting(samples=1), scene, 24, seed).radiance for seed in range(64)], 0)

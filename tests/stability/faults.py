@@ -83,9 +83,9 @@ def lobe_halved(reflected, *_):
     overwrite(reflected.radiance, reflected.radiance / 2)
 
 
-def unsnapped(place, grid, scene, camera=None):
+def unsnapped(place, grid, scene, camera=None, *more):
     """The grid follows the camera by parts of a voxel."""
-    domain = place(grid, scene, camera)
+    domain = place(grid, scene, camera, *more)
     lower = np.add(domain.lower, np.mod(camera.position, domain.voxel_size)) - domain.voxel_size / 2
     return _core.Domain(lower=[float(v) for v in lower], voxel_size=domain.voxel_size, cells=domain.cells)
 
