@@ -1,5 +1,6 @@
 /// Where voxels stand: a box of them, evenly spread or warped, or several boxes nested in each other.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -57,6 +58,18 @@ struct Domain {
 
     /// How many voxels lie along a unit of p, axis by axis: the Jacobian of the warp.
     mat3 density(const vec3& p) const;
+    /// Number of the finest of nested grids at a point; towards the faces of a grid it grows steadily to the next one's.
+    float grid_level(const vec3& p) const;
+    /// Where that happens in grid k: from how far within its faces down (x + 1 / y to x), linear voxels of the finest size. A
+    /// trilinear tap there has all of its texels within the grid.
+    vec2 band(int k) const {
+        const auto size = static_cast<float>(1 << k);
+        return {size, 8.0f / (size * static_cast<float>(std::min({cells.x, cells.y, cells.z})))};
+    }
+    /// Radius of a view volume, linear voxels.
+    float view_radius() const;
+    /// The longest way of a cone, in voxels as small as there are.
+    float longest_way() const;
 
     std::uint32_t cell(const ivec3& at, int cascade = 0) const {
         const auto one = static_cast<std::uint32_t>(at.x + cells.x * (at.y + cells.y * at.z));

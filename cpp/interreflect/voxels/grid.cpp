@@ -11,7 +11,8 @@ namespace {
 struct Setting {
     const Grid& grid;
     const Camera* camera;
-    float aspect, extent;  // of the scene: its bounds' longest side
+    Geometry::Bounds bounds;
+    float aspect, extent;  // extent: the bounds' longest side
 
     const Camera& needed_camera(const char* what) const {
         if (camera == nullptr) throw std::invalid_argument(std::string(what) + " needs a camera");
@@ -33,13 +34,13 @@ Domain spread(const vec3& lower, const vec3& extent, int count, float air) {
     return domain;
 }
 
-Domain cover(const SceneBounds&, const Setting& at, const Geometry::Bounds& bounds) {
-    const vec3 extent = bounds.upper - bounds.lower;
+Domain cover(const SceneBounds&, const Setting& at) {
+    const vec3 extent = at.bounds.upper - at.bounds.lower;
     if (!(min_component(extent) >= 0.0f) || !(max_component(extent) > 0.0f)) return {};
-    return spread(bounds.lower, extent, at.grid.resolution, 1.0f);
+    return spread(at.bounds.lower, extent, at.grid.resolution, 1.0f);
 }
 
-Domain cover(const Box& box, const Setting& at, const Geometry::Bounds&) {
+Domain cover(const Box& box, const Setting& at) {
     const vec3 lower(box.lower_x, box.lower_y, box.lower_z), extent = vec3(box.upper_x, box.upper_y, box.upper_z) - lower;
     if (!(min_component(extent) > 0.0f))
         throw std::invalid_argument("Box: upper must lie above lower along every axis; the extents are " +
@@ -47,7 +48,7 @@ Domain cover(const Box& box, const Setting& at, const Geometry::Bounds&) {
     return spread(lower, extent, at.grid.resolution, 0.0f);
 }
 
-Domain cover(const AroundCamera& region, const Setting& at, const Geometry::Bounds&) {
+Domain cover(const AroundCamera& region, const Setting& at) {
     if (!(at.extent > 0.0f)) return {};
     Domain domain;
     domain.cells = ivec3(at.grid.resolution);
@@ -84,24 +85,28 @@ void nest(const Setting& at, Domain& domain) {
     }
 }
 
-void set_depth(const ViewVolume& volume, const Setting& at, float scale, Warp& warp) {
-    if (!(volume.far > volume.near))
-        throw std::invalid_argument("a view volume's far must lie beyond its near; got " + std::to_string(volume.far) + " and " +
-                                    std::to_string(volume.near));
-    warp.near = static_cast<float>(volume.near) * at.extent * scale;
-    warp.far = static_cast<float>(volume.far) * at.extent * scale;
+/// How far away the scene's farthest corner lies: the same wherever the camera looks.
+float farthest(const Setting& at, const vec3& eye) {
+    const vec3 away = glm::max(glm::abs(at.bounds.lower - eye), glm::abs(at.bounds.upper - eye));
+    return glm::length(away);
 }
 
 /// A grid whose linear voxels have the eye at 0 and the volume's depth over `resolution` as their size.
 Domain view_volume(const ViewVolume& volume, const Setting& at, const Camera& camera) {
+    const float near = static_cast<float>(volume.near) * at.extent;
+    const float far = volume.far > 0.0 ? static_cast<float>(volume.far) * at.extent : farthest(at, camera.position);
+    if (!(far > near))
+        throw std::invalid_argument("a view volume's far must lie beyond its near; in scene units they are " +
+                                    std::to_string(far) + " and " + std::to_string(near));
     Domain domain;
     domain.lower = camera.position;
     domain.cells = ivec3(at.grid.resolution);
     const float narrow = at.aspect > 1.0f ? 1.0f / at.aspect : at.aspect;
     domain.cells[at.aspect > 1.0f ? 1 : 0] =
         std::max(1, static_cast<int>(std::lround(static_cast<float>(at.grid.resolution) * narrow)));
-    domain.voxel_size = static_cast<float>(volume.far - volume.near) * at.extent / static_cast<float>(at.grid.resolution);
-    set_depth(volume, at, 1.0f / domain.voxel_size, domain.warp);
+    domain.voxel_size = (far - near) / static_cast<float>(at.grid.resolution);
+    domain.warp.near = near / domain.voxel_size;
+    domain.warp.far = far / domain.voxel_size;
     return domain;
 }
 
@@ -166,12 +171,12 @@ Domain view_domain(const Volume& volume, const Setting& at) {
 
 Domain place(const Grid& grid, const Scene& scene, const Camera* camera, float aspect) {
     const auto bounds = scene.geometry->bounds();
-    const Setting at{grid, camera, aspect, max_component(bounds.upper - bounds.lower)};
+    const Setting at{grid, camera, bounds, aspect, max_component(bounds.upper - bounds.lower)};
     if (grid.cascades > 1 && !std::holds_alternative<Linear>(grid.warp))
         throw std::invalid_argument("Grid: cascades are nested grids without a warp: warp must be Linear(), or cascades 1");
     if (const auto* volume = std::get_if<Perspective>(&grid.warp)) return view_domain(*volume, at);
     if (const auto* volume = std::get_if<Spherical>(&grid.warp)) return view_domain(*volume, at);
-    Domain domain = std::visit([&](const auto& region) { return cover(region, at, bounds); }, grid.region);
+    Domain domain = std::visit([&](const auto& region) { return cover(region, at); }, grid.region);
     if (const auto* warp = std::get_if<CubicSpline>(&grid.warp))
         spread_about(at, Warp::Kind::cubic, 1.5f - 0.5f * static_cast<float>(warp->alpha), domain);
     if (const auto* warp = std::get_if<Logistic>(&grid.warp))

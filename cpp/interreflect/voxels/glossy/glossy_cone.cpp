@@ -20,7 +20,7 @@ constexpr int widths = 49;  // 0 to 60 degrees; wider lobes reach below the surf
 /// One pixel's cone.
 struct Reflection {
     int pixel, width;
-    vec3 surface, direction, albedo;  // surface: voxels
+    vec3 surface, direction, albedo;  // surface: linear voxels
 };
 
 struct Work {
@@ -52,7 +52,7 @@ Reflection reflect(const Work& work, int pixel) {
     const vec3 specular = g.specular[pixel];
     const float degrees = cone.half_angle / degrees_to_radians;
     return {pixel, std::min(static_cast<int>(std::lround(degrees / degrees_a_width)), widths - 1),
-            work.pyramid.domain.to_voxels(g.position[pixel]),
+            work.pyramid.domain.to_linear(g.position[pixel]),
             glm::normalize(tangent * cone.direction.x + normal * cone.direction.y),
             specular * cone.scale + (vec3(1) - specular) * (lobe == Lobe::ggx ? cone.bias : 0.0f)};
 }

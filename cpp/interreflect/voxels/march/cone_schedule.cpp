@@ -6,8 +6,7 @@
 namespace interreflect {
 
 ConeSchedule make_schedule(const ConeShape& shape, const Pyramid& pyramid) {
-    const vec3 size(pyramid.domain.cells);
-    const float diagonal = glm::length(size);
+    const float diagonal = pyramid.domain.longest_way();
     const auto coarsest = static_cast<float>(pyramid.levels.size() - 1);
     // A cone of half angle 0 must still advance: its diameter is at least that of its start.
     const float growth = 1.0f + 2.0f * std::tan(shape.half_angle) * shape.step;
@@ -27,6 +26,8 @@ ConeSchedule make_schedule(const ConeShape& shape, const Pyramid& pyramid) {
         // Near the finest level a texel is as thin as a surface, whose opacity successive taps have a part of each.
         step.correlation = shape.correlation * std::clamp(lod - 1.0f, 0.0f, 1.0f);
         step.reach = std::exp2(level);
+        step.lod = lod;
+        step.density = shape.density * length;
         schedule.steps.push_back(step);
         // A sample stands for the step around it: half of this one and half of the next lie between the two.
         const float next = length * growth;

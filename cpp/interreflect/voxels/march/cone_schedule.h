@@ -25,13 +25,16 @@ struct ConeSchedule {
         float blend;        // share of the next coarser level, in [0, 1)
         int level;          // the finer of the two levels
         float correlation;  // of what blocks the cone here and before
+        float lod;          // level before it is clamped to those there are
+        float density;      // optical depth of a texel of the finest level as a multiple of what its opacity says
     };
     std::vector<Step> steps;
 };
 
-/// Steps until the cone has left any domain of the pyramid's size. The diameter starts at `first_diameter` and the first sample
-/// lies half a step away; distance and level then grow by one multiplication and one addition a step [Rehfeld et al. 2014, 4].
-/// There `alpha` must be the half angle (ERRATA).
+/// Steps until the cone has left any domain of the pyramid's size. Where the domain is warped, lengths are in voxels as they are
+/// at the cone's start. The diameter starts at `first_diameter` and the first sample lies half a step away; distance and level
+/// then grow by one multiplication and one addition a step [Rehfeld et al. 2014, 4]. There `alpha` must be the half angle
+/// (ERRATA).
 ConeSchedule make_schedule(const ConeShape& shape, const Pyramid& pyramid);
 
 }  // namespace interreflect

@@ -1,5 +1,7 @@
 #include "voxels/march/march_cones.h"
 
+#include "voxels/march/march_warped.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "voxels/march/march_cones.cpp"
 #include <hwy/foreach_target.h>
@@ -16,15 +18,6 @@ namespace interreflect {
 namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
-
-/// Distance at which rays leave the box [0, size].
-template <class D, class V = hn::Vec<D>>
-HWY_INLINE V exit_distance(D d, V p, V direction, float size) {
-    const V zero = hn::Zero(d);
-    const V to_wall = hn::Sub(hn::IfThenElseZero(hn::Gt(direction, zero), hn::Set(d, size)), p);
-    const auto moves = hn::Gt(hn::Abs(direction), hn::Set(d, 1e-6f));
-    return hn::IfThenElse(moves, hn::Div(to_wall, hn::IfThenElse(moves, direction, hn::Set(d, 1.0f))), hn::Set(d, 1e9f));
-}
 
 ConeCounts march_batch(const Pyramid& pyramid, const AirMap& air, const ConeSchedule& schedule, float cut_off, ConeBatch& batch) {
     const hn::ScalableTag<float> d;
@@ -87,9 +80,9 @@ ConeCounts march_batch(const Pyramid& pyramid, const AirMap& air, const ConeSche
             hn::LoadInterleaved4(d, colour, tr, tg, tb, ta);
             ta = hn::IfThenElseZero(seeing, hn::Min(hn::Max(ta, zero), one));
             const V h = hn::MulAdd(slope, distance, height), along = hn::MulAdd(axis_direction, distance, axis_start);
-            V own = own_opacity(d, l0.inverse_size, h, width, axis_plane, along, axis_cells, aligned);
+            V own = own_opacity(d, hn::Set(d, l0.inverse_size), h, width, axis_plane, along, axis_cells, aligned);
             if (two) {
-                const V next = own_opacity(d, l1.inverse_size, h, width, axis_plane, along, axis_cells, aligned);
+                const V next = own_opacity(d, hn::Set(d, l1.inverse_size), h, width, axis_plane, along, axis_cells, aligned);
                 own = hn::MulAdd(hn::Sub(next, own), hn::Set(d, step.blend), own);
             }
             own = hn::IfThenElseZero(has_plane, own);
@@ -119,14 +112,12 @@ ConeCounts march_batch(const Pyramid& pyramid, const AirMap& air, const ConeSche
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-#include <stdexcept>
-
 namespace interreflect {
 
 HWY_EXPORT(march_batch);
 
 ConeCounts march_cones(const Pyramid& pyramid, const AirMap& air, const ConeSchedule& schedule, float cut_off, ConeBatch& batch) {
-    if (!pyramid.domain.plain()) throw std::invalid_argument("march: cones need a grid without warp and cascades so far");
+    if (!pyramid.domain.plain()) return march_warped(pyramid, air, schedule, cut_off, batch);
     return HWY_DYNAMIC_DISPATCH(march_batch)(pyramid, air, schedule, cut_off, batch);
 }
 

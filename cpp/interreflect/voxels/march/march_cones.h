@@ -20,12 +20,19 @@ struct ConeBatch {
     // agrees with that axis: 1 where the layer's place in the grid is known, 0 where its mean over all places must do.
     alignas(64) float axis_plane[capacity], axis_start[capacity], axis_direction[capacity], aligned[capacity];
     alignas(64) float axis_cells[capacity];  // size of the domain along that axis
-    // Where `limited`: the cone ends where its filter reaches this far from the start, voxels.
+    // Where `limited`: the cone ends where its filter reaches this far from the start, linear voxels.
     bool limited = false;
     alignas(64) float limit[capacity];
+    // Where the domain is not plain: starts and directions are in linear voxels, and the plane is the one that touches the warped
+    // surface. How long the start's voxels are in linear ones; the plane's unit normal; the number of its longest axis.
+    alignas(64) float scale[capacity];
+    alignas(64) float nx[capacity], ny[capacity], nz[capacity], axis[capacity];
     // Results: radiance in the pyramid's unit (times `scale` is W/(m^2 sr)), and the share that leaves the domain unblocked.
     alignas(64) float r[capacity], g[capacity], b[capacity], open[capacity];
 };
+
+/// Within 8 degrees of an axis: over the few texels of a filter such a plane stays in one layer.
+inline constexpr float aligned_cosine = 0.99f;
 
 /// The axis along which a normal is longest.
 inline int longest_axis(const vec3& normal) {
@@ -33,9 +40,14 @@ inline int longest_axis(const vec3& normal) {
     return size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
 }
 
-/// Enters where cone `i` starts: `offset` voxels above the plane through `surface` with that normal.
+/// set_start where the domain is not plain.
+void set_warped_start(ConeBatch& batch, int i, const Domain& domain, const vec3& surface, const vec3& normal, float offset,
+                      bool see_own_surface);
+
+/// Enters where cone `i` starts: `offset` voxels above the plane through `surface` (linear voxels) with that normal.
 inline void set_start(ConeBatch& batch, int i, const Domain& domain, const vec3& surface, const vec3& normal, float offset,
                       bool see_own_surface) {
+    if (!domain.plain()) return set_warped_start(batch, i, domain, surface, normal, offset, see_own_surface);
     const vec3 start = surface + normal * offset, size = glm::abs(normal);
     const int axis = longest_axis(normal);
     batch.x[i] = start.x, batch.y[i] = start.y, batch.z[i] = start.z;
@@ -44,8 +56,7 @@ inline void set_start(ConeBatch& batch, int i, const Domain& domain, const vec3&
     batch.axis_plane[i] = surface[axis];
     batch.axis_start[i] = start[axis];
     batch.axis_cells[i] = static_cast<float>(domain.cells[axis]);
-    // Within 8 degrees of an axis: over the few texels of a filter such a plane stays in one layer.
-    batch.aligned[i] = size[axis] > 0.99f ? 1.0f : 0.0f;
+    batch.aligned[i] = size[axis] > aligned_cosine ? 1.0f : 0.0f;
 }
 
 /// Enters where cone `i` goes; `normal` is that of its start.

@@ -25,9 +25,10 @@ HWY_INLINE V tent_integral(D d, V x) {
 }
 
 /// What the receiver's own plane adds to a level's filtered opacity at a sample: its voxels are a layer `width` texels thick.
+/// `scale`: texels a voxel.
 template <class D, class V = hn::Vec<D>>
-HWY_INLINE V own_opacity(D d, float inverse_size, V height, V width, V axis_plane, V axis_sample, V axis_cells, V aligned) {
-    const V scale = hn::Set(d, inverse_size), half = hn::Set(d, 0.5f), one = hn::Set(d, 1.0f), zero = hn::Zero(d);
+HWY_INLINE V own_opacity(D d, V scale, V height, V width, V axis_plane, V axis_sample, V axis_cells, V aligned) {
+    const V half = hn::Set(d, 0.5f), one = hn::Set(d, 1.0f), zero = hn::Zero(d);
     const V h = hn::Mul(height, scale), reach = hn::Mul(width, half);
     const V mean = hn::Sub(tent_integral(d, hn::Add(h, reach)), tent_integral(d, hn::Sub(h, reach)));
     const V centre = hn::Add(hn::Floor(hn::Mul(axis_plane, scale)), half);
@@ -46,22 +47,34 @@ HWY_INLINE V polynomial(D d, V x, const float (&coefficients)[n]) {
     return sum;
 }
 
-/// x^exponent, x in [0, 1], within 1e-6 times the exponent: opacities are half floats. Exactly 1 at 1, and 0 from 1e-12 down.
+/// log2(x), x > 0.
 template <class D, class V = hn::Vec<D>>
-HWY_INLINE V power(D d, V x, float exponent) {
+HWY_INLINE V log2_of(D d, V x) {
     const hn::RebindToSigned<D> di;
-    // Chebyshev fits: log2(1 + t) / t for 1 + t in [sqrt(1/2), sqrt(2)], and 2^t for t in [-1/2, 1/2].
+    // Chebyshev fit of log2(1 + t) / t for 1 + t in [sqrt(1/2), sqrt(2)].
     static constexpr float log2_over_t[] = {0.172128703f, -0.269506265f, 0.295633603f, -0.359350654f,
                                             0.480629147f, -0.72136404f,  1.44269643f};
-    static constexpr float exp2_of_t[] = {0.00134004322f, 0.0096760371f, 0.0555032721f, 0.240221074f, 0.693147207f, 1.0f};
     const auto bits = hn::BitCast(di, x);
     const auto whole = hn::ShiftRight<23>(hn::Sub(bits, hn::Set(di, 0x3f3504f3)));  // sqrt(1/2)
     const V t = hn::Sub(hn::BitCast(d, hn::Sub(bits, hn::ShiftLeft<23>(whole))), hn::Set(d, 1.0f));
-    const V log2 = hn::MulAdd(t, polynomial(d, t, log2_over_t), hn::ConvertTo(d, whole));
-    const V y = hn::Max(hn::Mul(log2, hn::Set(d, exponent)), hn::Set(d, -126.0f)), nearest = hn::Round(y);
-    const V mantissa = polynomial(d, hn::Sub(y, nearest), exp2_of_t);
-    const V result = hn::BitCast(d, hn::Add(hn::BitCast(di, mantissa), hn::ShiftLeft<23>(hn::ConvertTo(di, nearest))));
-    return hn::IfThenElseZero(hn::Gt(x, hn::Set(d, 1e-12f)), result);
+    return hn::MulAdd(t, polynomial(d, t, log2_over_t), hn::ConvertTo(d, whole));
+}
+
+/// 2^y, y in [-126, 126].
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V exp2_of(D d, V y) {
+    const hn::RebindToSigned<D> di;
+    // Chebyshev fit of 2^t for t in [-1/2, 1/2].
+    static constexpr float exp2_of_t[] = {0.00134004322f, 0.0096760371f, 0.0555032721f, 0.240221074f, 0.693147207f, 1.0f};
+    const V nearest = hn::Round(y), mantissa = polynomial(d, hn::Sub(y, nearest), exp2_of_t);
+    return hn::BitCast(d, hn::Add(hn::BitCast(di, mantissa), hn::ShiftLeft<23>(hn::ConvertTo(di, nearest))));
+}
+
+/// x^exponent, x in [0, 1], within 1e-6 times the exponent: opacities are half floats. Exactly 1 at 1, and 0 from 1e-12 down.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V power(D d, V x, V exponent) {
+    const V y = hn::Max(hn::Mul(log2_of(d, x), exponent), hn::Set(d, -126.0f));
+    return hn::IfThenElseZero(hn::Gt(x, hn::Set(d, 1e-12f)), exp2_of(d, y));
 }
 
 /// 1 - (1 - a)^exponent.
@@ -72,7 +85,7 @@ HWY_INLINE V stretched_opacity(D d, V a, float exponent) {
     const V clear = hn::Sub(one, a);
     if (exponent == 0.5f) return hn::Sub(one, hn::Sqrt(clear));
     if (exponent == 2.0f) return hn::Sub(one, hn::Mul(clear, clear));
-    return hn::Sub(one, power(d, clear, exponent));
+    return hn::Sub(one, power(d, clear, hn::Set(d, exponent)));
 }
 
 /// How much of the cone a step newly blocks. Independent of what blocked it before, it is the step's share of what is open; fully

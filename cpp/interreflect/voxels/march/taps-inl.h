@@ -91,6 +91,15 @@ HWY_INLINE hn::Mask<D> place_taps(D d, const LevelView& level, V x, V y, V z, Ta
     return hn::RebindMask(d, hn::Ne(hn::And(bits, bit), hn::Zero(di)));
 }
 
+/// Distance at which rays leave the box [0, size].
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V exit_distance(D d, V p, V direction, float size) {
+    const V zero = hn::Zero(d);
+    const V to_wall = hn::Sub(hn::IfThenElseZero(hn::Gt(direction, zero), hn::Set(d, size)), p);
+    const auto moves = hn::Gt(hn::Abs(direction), hn::Set(d, 1e-6f));
+    return hn::IfThenElse(moves, hn::Div(to_wall, hn::IfThenElse(moves, direction, hn::Set(d, 1.0f))), hn::Set(d, 1e9f));
+}
+
 /// The octant of each direction of a vector.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE void store_octants(D d, V dx, V dy, V dz, int* octants) {
@@ -102,14 +111,16 @@ HWY_INLINE void store_octants(D d, V dx, V dy, V dz, int* octants) {
 }
 
 /// What a cone sees of a level: its one volume, the one of its octant, or three of its six blended by the squared direction.
-HWY_INLINE hn::Vec<decltype(d4)> sample(const LevelView& level, const Taps& taps, int lane, const float* direction, int octant) {
+/// `direction`: x of it, then y and z `stride` floats further each.
+HWY_INLINE hn::Vec<decltype(d4)> sample(const LevelView& level, const Taps& taps, int lane, const float* direction, int stride,
+                                        int octant) {
     const Half* at = level.texels + taps.offset[lane];
     if (level.faces == 8) at += level.volume * static_cast<std::size_t>(octant);
     const float fx = taps.fx[lane], fy = taps.fy[lane], fz = taps.fz[lane];
     if (level.faces != 6) return tap(at, level.row, level.slice, fx, fy, fz);
     auto sum = hn::Zero(d4);
     for (int axis = 0; axis < 3; ++axis) {
-        const float along = direction[axis * ConeBatch::capacity];
+        const float along = direction[axis * stride];
         const Half* face = at + level.volume * static_cast<std::size_t>(2 * axis + (along > 0.0f ? 0 : 1));
         sum = hn::MulAdd(tap(face, level.row, level.slice, fx, fy, fz), hn::Set(d4, along * along), sum);
     }
@@ -142,9 +153,9 @@ HWY_INLINE hn::Vec<decltype(d4)> sample_both(const LevelView& l0, const Taps& t0
 }
 
 /// The weights of sample_both for a vector of cones.
-template <class D>
-HWY_INLINE void column_weights(D d, const Taps& fine, const Taps& coarse, float blend, float* weights) {
-    const auto share = hn::Set(d, blend), rest = hn::Set(d, 1.0f - blend);
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE void column_weights(D d, const Taps& fine, const Taps& coarse, V share, float* weights) {
+    const auto rest = hn::Sub(hn::Set(d, 1.0f), share);
     const auto right0 = hn::Mul(hn::Load(d, fine.fx), rest), right1 = hn::Mul(hn::Load(d, coarse.fx), share);
     hn::StoreInterleaved4(hn::Sub(rest, right0), right0, hn::Sub(share, right1), right1, d, weights);
 }
@@ -157,7 +168,7 @@ HWY_INLINE void sample_lanes(D d, unsigned bits, const LevelView& l0, const Taps
 #if HWY_MAX_BYTES >= 64
     if (l1 != nullptr && l1->faces != 6) {
         alignas(64) float weights[4 * max_lanes];
-        column_weights(d, fine, coarse, blend, weights);
+        column_weights(d, fine, coarse, hn::Set(d, blend), weights);
         for (unsigned left = bits; left != 0; left &= left - 1) {
             const int lane = static_cast<int>(hwy::Num0BitsBelowLS1Bit_Nonzero32(left));
             const auto octant = static_cast<std::size_t>(l0.faces == 8 ? octants[lane] : 0);
@@ -170,9 +181,10 @@ HWY_INLINE void sample_lanes(D d, unsigned bits, const LevelView& l0, const Taps
     const auto share = hn::Set(d4, blend);
     for (unsigned left = bits; left != 0; left &= left - 1) {
         const int lane = static_cast<int>(hwy::Num0BitsBelowLS1Bit_Nonzero32(left));
-        auto seen = sample(l0, fine, lane, directions + lane, octants[lane]);
+        auto seen = sample(l0, fine, lane, directions + lane, ConeBatch::capacity, octants[lane]);
         if (l1 != nullptr)
-            seen = hn::MulAdd(hn::Sub(sample(*l1, coarse, lane, directions + lane, octants[lane]), seen), share, seen);
+            seen = hn::MulAdd(hn::Sub(sample(*l1, coarse, lane, directions + lane, ConeBatch::capacity, octants[lane]), seen),
+                              share, seen);
         hn::Store(seen, d4, colour + 4 * lane);
     }
 }

@@ -33,7 +33,8 @@ struct VoxelTriangle {
 
 /// How a voxelization wants to be handed triangles where the domain is not plain.
 enum class Handing {
-    pieces,   // flat ones in warped voxels, each in one of nested grids: a sample at `corner`s' space is where it lies
+    pieces,   // flat ones in warped voxels, each in one of nested grids: a sample in `corner`s' space is where it lies
+    sampled,  // the same, larger and not so flat: the sink warps every sample
     grids,    // whole, in linear voxels, once for each of nested grids; the sink warps samples and keeps those of that grid
     at_once,  // whole, in linear voxels of the finest grid, once; the sink warps samples and finds their grid
 };

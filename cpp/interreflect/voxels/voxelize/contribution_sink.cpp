@@ -6,7 +6,7 @@ void ContributionSink::begin_placed() {
     const VoxelTriangle& t = *triangle_;
     origin_ = t.linear[0];
     linear_area_ = handing_ == Handing::grids ? static_cast<float>(1 << (2 * t.cascade)) : 1.0f;
-    if (handing_ != Handing::pieces) return;
+    if (handing_ != Handing::pieces && handing_ != Handing::sampled) return;
     along_[0] = t.linear[1] - t.linear[0];
     along_[1] = t.linear[2] - t.linear[0];
     const vec3 e1 = t.corner[1] - t.corner[0], e2 = t.corner[2] - t.corner[0], normal = glm::cross(e1, e2);
@@ -18,7 +18,9 @@ void ContributionSink::begin_placed() {
 
 void ContributionSink::add_warped(const vec3& position, float area, bool solid, const vec3& albedo, const vec3& emitted) {
     const bool one_grid = handing_ == Handing::grids;
-    const vec3 p = one_grid ? domain_.linear_in(triangle_->cascade, position) : position;
+    const vec3 p = handing_ == Handing::sampled ? linear_in_piece(position)
+                   : one_grid                   ? domain_.linear_in(triangle_->cascade, position)
+                                                : position;
     const VoxelPlace at = domain_.place(p);
     if (!domain_.inside(at.voxels) || (one_grid && at.cascade != triangle_->cascade)) return;
     const ivec3 cell(at.voxels);
@@ -26,17 +28,12 @@ void ContributionSink::add_warped(const vec3& position, float area, bool solid, 
 }
 
 void ContributionSink::place_part(Contribution& c) const {
-    const VoxelTriangle& t = *triangle_;
-    if (handing_ != Handing::pieces) {
+    if (warps_samples_) {
         c.position += (origin_ - domain_.linear_centre(c.cell)) * c.area;
     } else {
-        const vec3 first = vec3(domain_.coordinates(c.cell)) + 0.5f - t.corner[0];
-        c.cell += domain_.cell(ivec3(0), t.cascade);
-        if (c.area > 0.0f) {
-            const vec3 q = first + c.position / c.area;
-            const vec3 p = origin_ + along_[0] * glm::dot(to_weights_[0], q) + along_[1] * glm::dot(to_weights_[1], q);
-            c.position = (p - domain_.linear_centre(c.cell)) * c.area;
-        }
+        const vec3 centre = vec3(domain_.coordinates(c.cell)) + 0.5f;
+        c.cell += domain_.cell(ivec3(0), triangle_->cascade);
+        if (c.area > 0.0f) c.position = (linear_in_piece(centre + c.position / c.area) - domain_.linear_centre(c.cell)) * c.area;
     }
     // Areas weigh the parts of a cell against each other: as in space, not as in the warped grid.
     c.position *= linear_area_;

@@ -9,7 +9,12 @@ namespace interreflect {
 class ContributionSink {
   public:
     ContributionSink(const Domain& domain, Handing handing, CellMarks& marks)
-        : domain_(domain), handing_(handing), plain_(domain.plain()), marks_(marks) {}
+        : domain_(domain),
+          handing_(handing),
+          plain_(domain.plain()),
+          // Pieces for nested grids are flat.
+          warps_samples_(!plain_ && handing != Handing::pieces && !(handing == Handing::sampled && domain.cascades > 1)),
+          marks_(marks) {}
 
     std::vector<Contribution> surface;
     std::vector<EmissionContribution> emission;
@@ -22,14 +27,14 @@ class ContributionSink {
     }
     /// A sample of the current triangle at `position` voxels that stands for `area`; dropped outside the domain.
     [[gnu::always_inline]] void add(const vec3& position, float area, bool solid, const vec3& albedo, const vec3& emitted) {
-        if (handing_ != Handing::pieces && !plain_) return add_warped(position, area, solid, albedo, emitted);
+        if (warps_samples_) return add_warped(position, area, solid, albedo, emitted);
         const vec3 floor = glm::floor(position);
         if (!inside(floor)) return;
         add(ivec3(floor), position - floor - 0.5f, area, solid, albedo, emitted);
     }
     /// The only sample of the current triangle.
     [[gnu::always_inline]] void add_only(const vec3& position, bool solid, const vec3& albedo, const vec3& emitted) {
-        if (handing_ != Handing::pieces && !plain_) return add_warped(position, triangle_->area, solid, albedo, emitted);
+        if (warps_samples_) return add_warped(position, triangle_->area, solid, albedo, emitted);
         const vec3 floor = glm::floor(position);
         if (!inside(floor)) return;
         ++samples;
@@ -102,8 +107,14 @@ class ContributionSink {
 
     const Domain& domain_;
     const Handing handing_;
-    const bool plain_;
+    const bool plain_, warps_samples_;
     CellMarks& marks_;
+    /// Linear voxels of a place in the current piece.
+    vec3 linear_in_piece(const vec3& q) const {
+        const vec3 from = q - triangle_->corner[0];
+        return origin_ + along_[0] * glm::dot(to_weights_[0], from) + along_[1] * glm::dot(to_weights_[1], from);
+    }
+
     // Of a piece: q are warped voxels, p linear ones. Weights of its second and third corner are to_weights_ (q - first corner).
     vec3 to_weights_[2] = {}, origin_{0}, along_[2] = {};
     float linear_area_ = 1;  // of a face of a voxel

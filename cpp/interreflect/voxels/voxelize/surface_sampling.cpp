@@ -75,7 +75,7 @@ void sample_triangle(const VoxelTriangle& t, const vec3& cells, float spacing, C
 
 VoxelGrid voxelize(const SurfaceSampling& technique, const Scene& scene, const Domain& domain) {
     const auto spacing = static_cast<float>(technique.spacing);
-    return voxelize_triangles(scene, domain, Handing::pieces,
+    return voxelize_triangles(scene, domain, Handing::sampled,
                               [spacing, cells = vec3(domain.cells)](const VoxelTriangle& triangle, ContributionSink& sink) {
                                   sample_triangle(triangle, cells, spacing, sink);
                               });

@@ -9,7 +9,9 @@ namespace interreflect {
 namespace {
 
 constexpr std::uint32_t triangles_of_range = 2048;
-constexpr float most_bend = 1.0f / 32.0f;  // voxels
+// How far a piece may bend away from a flat one, voxels: where samples are put as if it were flat; and where only their spacing
+// is chosen so.
+constexpr float most_bend = 1.0f / 32.0f, most_bend_sampled = 0.5f;
 constexpr int most_halvings = 24;
 
 /// A corner of a piece: linear voxels, and where it lies in the whole triangle.
@@ -75,8 +77,8 @@ std::array<HalfSpace, 6> faces(const Warp& w) {
 
 class Pieces {
   public:
-    Pieces(const Domain& domain, const VoxelTriangle& whole, const VisitTriangle& visit)
-        : domain_(domain), whole_(whole), visit_(visit), piece_(whole) {}
+    Pieces(const Domain& domain, float bend, const VoxelTriangle& whole, const VisitTriangle& visit)
+        : domain_(domain), whole_(whole), visit_(visit), most_bend_(bend), piece_(whole) {}
 
     /// `triangle`: the whole one, in linear voxels.
     void cut_up() {
@@ -120,11 +122,11 @@ class Pieces {
     void flatten(const std::array<Corner, 3>& c, int cascade, int halvings) {
         const vec3 q[3] = {voxels(c[0].p, cascade), voxels(c[1].p, cascade), voxels(c[2].p, cascade)};
         int worst = -1;
-        float most = most_bend * most_bend;
+        float most = most_bend_ * most_bend_;
         for (int i = 0; i < 3 && domain_.warp.kind != Warp::Kind::linear && halvings > 0; ++i) {
             const int j = (i + 1) % 3;
             const vec3 edge = q[j] - q[i];
-            const float length = glm::dot(edge, edge) * (1.0f / (16.0f * 16.0f)) * most_bend * most_bend;
+            const float length = glm::dot(edge, edge) * (1.0f / (16.0f * 16.0f)) * most_bend_ * most_bend_;
             const float bent = std::max(bend(c[i], c[j], q[i], q[j]), length);
             if (bent > most) most = bent, worst = i;
         }
@@ -160,6 +162,7 @@ class Pieces {
     const Domain& domain_;
     const VoxelTriangle& whole_;
     const VisitTriangle& visit_;
+    const float most_bend_;
     VoxelTriangle piece_;
 };
 
@@ -254,8 +257,8 @@ void for_each_triangle(const Scene& scene, const Domain& domain, Handing handing
         add_surface(scene, t, triangle);
         if (plain)
             visit(triangle);
-        else if (handing == Handing::pieces)
-            Pieces(domain, triangle, visit).cut_up();
+        else if (handing == Handing::pieces || handing == Handing::sampled)
+            Pieces(domain, handing == Handing::pieces ? most_bend : most_bend_sampled, triangle, visit).cut_up();
         else
             hand_whole(domain, handing, triangle, visit);
     }

@@ -17,8 +17,8 @@ std::vector<TriangleRange> triangle_ranges(const Geometry& geometry);
 /// Calls visit(VoxelTriangle) for every triangle of a range that may lie in the domain, but for those without area: as it is in a
 /// plain domain, else as `handing` says.
 ///
-/// Pieces are so small that the warp moves no point of them by more than 1/32 voxel from where a straight piece would have it;
-/// they are cut at the faces of a view volume and of nested grids.
+/// Pieces are so small that the warp moves no point of them by more than 1/32 voxel (Handing::sampled: 1/2) from where a flat
+/// piece would have it; they are cut at the faces of a view volume and of nested grids.
 using VisitTriangle = std::function<void(const VoxelTriangle&)>;
 void for_each_triangle(const Scene& scene, const Domain& domain, Handing handing, const TriangleRange& range,
                        const VisitTriangle& visit);

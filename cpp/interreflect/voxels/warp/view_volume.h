@@ -6,13 +6,14 @@ namespace interreflect {
 
 struct ViewVolume {
     double near = 0.02;
-    double far = 1.0;
+    double far = 0.0;
     double widening = 1.25;
 
     bool operator==(const ViewVolume&) const = default;
     static constexpr auto params =
         std::tuple{Param{"near", &ViewVolume::near, "where voxels begin before the eye", Unit::extents, above_up_to(0, 10)},
-                   Param{"far", &ViewVolume::far, "where they end", Unit::extents, above_up_to(0, 100)},
+                   Param{"far", &ViewVolume::far, "where they end; 0: as far away as the scene's farthest corner", Unit::extents,
+                         between(0, 100)},
                    Param{"widening", &ViewVolume::widening,
                          "width of the volume as a multiple of the picture's: light from outside of it is lost", Unit::none,
                          between(1, 20)}};

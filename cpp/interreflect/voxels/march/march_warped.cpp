@@ -1,0 +1,245 @@
+#include "voxels/march/march_warped.h"
+
+#include <algorithm>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "voxels/march/march_warped.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "voxels/march/opacity-inl.h"
+#include "voxels/march/taps-inl.h"
+#include "voxels/march/warp_lanes-inl.h"
+
+// Roofline: as march_cones.cpp. Every cone of a vector has a level of its own, so addresses take three gathers from tables of a
+// level's strides, and the warp a few dozen operations a vector and step.
+HWY_BEFORE_NAMESPACE();
+namespace interreflect {
+namespace HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// The levels as vectors of cones read them, each cone at a level of its own.
+struct LevelTable {
+    LevelView views[32];
+    int32_t row[32], slice[32];
+    float origin_x[32], origin_y[32], origin_z[32];
+    int last;
+
+    explicit LevelTable(const Pyramid& pyramid, const AirMap& air) : last(static_cast<int>(pyramid.levels.size()) - 1) {
+        for (int i = 0; i <= last; ++i) {
+            const auto& level = pyramid.levels[static_cast<std::size_t>(i)];
+            views[i] = view_of(pyramid, air, i);
+            row[i] = static_cast<int32_t>(views[i].row);
+            slice[i] = static_cast<int32_t>(views[i].slice);
+            origin_x[i] = static_cast<float>(level.origin.x);
+            origin_y[i] = static_cast<float>(level.origin.y);
+            origin_z[i] = static_cast<float>(level.origin.z);
+        }
+    }
+};
+
+/// Trilinear taps at `at` voxels, each of its own level; `scale`: texels a voxel there.
+template <class D, class I, class V = hn::Vec<D>>
+HWY_INLINE void place_levels(D d, const LevelTable& table, I level, V scale, const Lanes3<V>& at, Taps& taps) {
+    const hn::RebindToSigned<D> di;
+    const V half = hn::Set(d, 0.5f);
+    const auto place = [&](V q, const float* origins, float* fractions) HWY_ATTR {
+        const V origin = hn::Add(hn::GatherIndex(d, origins, level), half), texels = hn::MulSub(q, scale, origin);
+        const V first = hn::Floor(texels);
+        hn::Store(hn::Sub(texels, first), d, fractions);
+        return hn::ConvertTo(di, first);
+    };
+    const auto ix = place(at.x, table.origin_x, taps.fx), iy = place(at.y, table.origin_y, taps.fy),
+               iz = place(at.z, table.origin_z, taps.fz);
+    const auto rows = hn::Mul(iy, hn::GatherIndex(di, table.row, level)),
+               slices = hn::Mul(iz, hn::GatherIndex(di, table.slice, level));
+    hn::Store(hn::Add(hn::Add(hn::ShiftLeft<2>(ix), rows), slices), di, taps.offset);
+}
+
+/// What a step of a vector of cones sees.
+struct Sight {
+    alignas(64) float colour[4 * max_lanes] = {}, toward[3 * max_lanes], blend[max_lanes];
+    alignas(64) int32_t level[max_lanes];
+    alignas(64) int octant[max_lanes];
+    Taps fine, coarse;
+};
+
+HWY_INLINE void look(const LevelTable& table, unsigned bits, Sight& s) {
+    const auto level_of = [&](int number) HWY_ATTR -> const LevelView& { return table.views[number]; };
+#if HWY_MAX_BYTES >= 64
+    if (table.views[table.last].faces != 6) {
+        const hn::ScalableTag<float> d;
+        alignas(64) float weights[4 * max_lanes];
+        column_weights(d, s.fine, s.coarse, hn::Load(d, s.blend), weights);
+        for (unsigned left = bits; left != 0; left &= left - 1) {
+            const int lane = static_cast<int>(hwy::Num0BitsBelowLS1Bit_Nonzero32(left)), level = s.level[lane];
+            const LevelView& fine = level_of(level);
+            const auto octant = static_cast<std::size_t>(fine.faces == 8 ? s.octant[lane] : 0);
+            const auto seen =
+                sample_both(fine, s.fine, level_of(std::min(level + 1, table.last)), s.coarse, lane, octant, weights + 4 * lane);
+            hn::Store(seen, d4, s.colour + 4 * lane);
+        }
+        return;
+    }
+#endif
+    for (unsigned left = bits; left != 0; left &= left - 1) {
+        const int lane = static_cast<int>(hwy::Num0BitsBelowLS1Bit_Nonzero32(left)), level = s.level[lane];
+        auto seen = sample(level_of(level), s.fine, lane, s.toward + lane, max_lanes, s.octant[lane]);
+        if (s.blend[lane] > 0.0f)
+            seen = hn::MulAdd(hn::Sub(sample(level_of(std::min(level + 1, table.last)), s.coarse, lane, s.toward + lane,
+                                             max_lanes, s.octant[lane]),
+                                      seen),
+                              hn::Set(d4, s.blend[lane]), seen);
+        hn::Store(seen, d4, s.colour + 4 * lane);
+    }
+}
+
+/// The cones [first, first + lanes) of a batch.
+template <class Map>
+ConeCounts march_vector(const Map& map, const LevelTable& table, const ConeSchedule& schedule, float cut_off, ConeBatch& batch,
+                        int first) {
+    const hn::ScalableTag<float> d;
+    const hn::RebindToSigned<decltype(d)> di;
+    using V = hn::Vec<decltype(d)>;
+    const int lanes = static_cast<int>(hn::Lanes(d));
+    const V zero = hn::Zero(d), one = hn::Set(d, 1.0f);
+    const Lanes3<V> start{hn::Load(d, batch.x + first), hn::Load(d, batch.y + first), hn::Load(d, batch.z + first)};
+    const Lanes3<V> direction{hn::Load(d, batch.dx + first), hn::Load(d, batch.dy + first), hn::Load(d, batch.dz + first)};
+    const Lanes3<V> normal{hn::Load(d, batch.nx + first), hn::Load(d, batch.ny + first), hn::Load(d, batch.nz + first)};
+    const V scale = hn::Load(d, batch.scale + first), height = hn::Load(d, batch.height + first);
+    const V width = hn::Load(d, batch.width + first), aligned = hn::Load(d, batch.aligned + first);
+    const V axis = hn::Load(d, batch.axis + first), axis_plane = hn::Load(d, batch.axis_plane + first);
+    const V axis_cells = hn::Load(d, batch.axis_cells + first);
+    V exit = map.exit(d, start, direction);
+    if (batch.limited) exit = hn::Min(exit, hn::Load(d, batch.limit + first));
+    const auto has_plane = hn::Gt(width, zero);
+    auto active = hn::FirstN(d, static_cast<std::size_t>(std::min(batch.count - first, lanes)));
+    V r = zero, g = zero, b = zero, open = one;
+    ConeCounts counts;
+    Sight sight;
+    for (const auto& step : schedule.steps) {
+        const V distance = hn::Mul(scale, hn::Set(d, step.distance));
+        const auto at = map.at(d, start, direction, distance);
+        // The start's scale turns the table's level into one of the finest voxels there; the density here, into one of ours.
+        const V wanted = hn::Add(hn::Set(d, step.lod), log2_of(d, hn::Mul(scale, at.density)));
+        const V lod = hn::Min(hn::Max(wanted, at.least_level), hn::Set(d, static_cast<float>(table.last)));
+        const V whole = hn::Floor(lod), blend = hn::Sub(lod, whole);
+        const V size = exp2_of(d, lod);  // of a texel, voxels
+        active = hn::And(active, hn::Lt(hn::Sub(distance, hn::Div(size, at.density)), exit));
+        if (hn::AllFalse(d, active)) break;
+        counts.steps += static_cast<std::uint64_t>(hn::CountTrue(d, active));
+        const auto seeing = hn::And(active, at.inside);
+        if (hn::AllFalse(d, seeing)) continue;
+
+        const auto level = hn::ConvertTo(di, whole), last = hn::Set(di, table.last);
+        const V texels = exp2_of(d, hn::Neg(whole)), next_texels = hn::Mul(texels, hn::Set(d, 0.5f));
+        place_levels(d, table, level, texels, at.voxels, sight.fine);
+        place_levels(d, table, hn::Min(hn::Add(level, hn::Set(di, 1)), last), next_texels, at.voxels, sight.coarse);
+        hn::Store(level, di, sight.level);
+        hn::Store(blend, d, sight.blend);
+        hn::Store(at.toward.x, d, sight.toward);
+        hn::Store(at.toward.y, d, sight.toward + max_lanes);
+        hn::Store(at.toward.z, d, sight.toward + 2 * max_lanes);
+        store_octants(d, at.toward.x, at.toward.y, at.toward.z, sight.octant);
+        uint8_t bytes[8] = {};
+        hn::StoreMaskBits(d, seeing, bytes);
+        look(table, static_cast<unsigned>(bytes[0]) | (static_cast<unsigned>(bytes[1]) << 8), sight);
+        counts.fetches += 2 * static_cast<std::uint64_t>(hn::CountTrue(d, seeing)) *
+                          static_cast<std::uint64_t>(table.views[table.last].faces == 6 ? 3 : 1);
+
+        V tr, tg, tb, ta;
+        hn::LoadInterleaved4(d, sight.colour, tr, tg, tb, ta);
+        ta = hn::IfThenElseZero(seeing, hn::Min(hn::Max(ta, zero), one));
+        const V h = hn::Add(dot(at.voxels, normal), height), along = at.voxels.of(d, axis);
+        V own = own_opacity(d, texels, h, width, axis_plane, along, axis_cells, aligned);
+        own = hn::MulAdd(hn::Sub(own_opacity(d, next_texels, h, width, axis_plane, along, axis_cells, aligned), own), blend, own);
+        own = hn::IfThenElseZero(has_plane, own);
+        const V others = hn::Div(hn::Max(hn::Sub(ta, own), zero), hn::Max(hn::Sub(one, own), hn::Set(d, 1e-3f)));
+        const V depth = hn::Div(hn::Mul(hn::Mul(hn::Set(d, step.density), scale), at.stretch), size);
+        const V clear = power(d, hn::Sub(one, hn::Min(others, one)), depth);
+        const V opacity = hn::IfThenElseZero(seeing, hn::Sub(one, clear));
+        const V blocked = newly_blocked(d, open, opacity, step.correlation);
+        const V share = hn::Div(blocked, hn::Max(ta, hn::Set(d, 1e-6f)));
+        r = hn::MulAdd(share, tr, r);
+        g = hn::MulAdd(share, tg, g);
+        b = hn::MulAdd(share, tb, b);
+        open = hn::Sub(open, blocked);
+        active = hn::And(active, hn::Ge(open, hn::Set(d, cut_off)));
+    }
+    const auto closed = hn::Lt(open, hn::Set(d, cut_off));
+    const V full = hn::IfThenElse(closed, hn::Div(one, hn::Sub(one, open)), one);
+    hn::Store(hn::Mul(r, full), d, batch.r + first);
+    hn::Store(hn::Mul(g, full), d, batch.g + first);
+    hn::Store(hn::Mul(b, full), d, batch.b + first);
+    hn::Store(hn::IfThenElse(closed, zero, open), d, batch.open + first);
+    return counts;
+}
+
+template <class Map>
+ConeCounts march_all(const Map& map, const Pyramid& pyramid, const AirMap& air, const ConeSchedule& schedule, float cut_off,
+                     ConeBatch& batch) {
+    const LevelTable table(pyramid, air);
+    const int lanes = static_cast<int>(hn::Lanes(hn::ScalableTag<float>()));
+    ConeCounts counts;
+    for (int first = 0; first < batch.count; first += lanes) {
+        const ConeCounts done = march_vector(map, table, schedule, cut_off, batch, first);
+        counts.steps += done.steps, counts.fetches += done.fetches;
+    }
+    return counts;
+}
+
+ConeCounts march_by_kind(const Pyramid& pyramid, const AirMap& air, const ConeSchedule& schedule, float cut_off,
+                         ConeBatch& batch) {
+    const Domain& domain = pyramid.domain;
+    const auto march = [&](const auto& map) { return march_all(map, pyramid, air, schedule, cut_off, batch); };
+    if (domain.cascades > 1) return march(NestedLanes(domain));
+    switch (domain.warp.kind) {
+        case Warp::Kind::perspective:
+            return march(PerspectiveLanes(domain));
+        case Warp::Kind::spherical:
+            return march(SphericalLanes(domain));
+        case Warp::Kind::logistic:
+            return march(SeparableLanes<LogisticCurve>(domain));
+        default:
+            return march(SeparableLanes<CubicCurve>(domain));
+    }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace interreflect
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace interreflect {
+
+HWY_EXPORT(march_by_kind);
+
+ConeCounts march_warped(const Pyramid& pyramid, const AirMap& air, const ConeSchedule& schedule, float cut_off,
+                        ConeBatch& batch) {
+    return HWY_DYNAMIC_DISPATCH(march_by_kind)(pyramid, air, schedule, cut_off, batch);
+}
+
+void set_warped_start(ConeBatch& batch, int i, const Domain& domain, const vec3& surface, const vec3& normal, float offset,
+                      bool see_own_surface) {
+    // Nested grids are marched in linear voxels of the finest one, by a coarseness without jumps.
+    const bool nested = domain.cascades > 1;
+    const mat3 density = nested ? mat3(std::exp2(-domain.grid_level(surface))) : domain.density(surface);
+    const vec3 start = surface + normal * (offset / glm::length(density * normal));
+    const vec3 on_surface = nested ? surface : domain.place(surface).voxels;
+    const vec3 facing = glm::normalize(glm::transpose(glm::inverse(density)) * normal), size = glm::abs(facing);
+    const int axis = longest_axis(facing);
+    batch.x[i] = start.x, batch.y[i] = start.y, batch.z[i] = start.z;
+    batch.nx[i] = facing.x, batch.ny[i] = facing.y, batch.nz[i] = facing.z;
+    batch.scale[i] = 1.0f / std::cbrt(std::fabs(glm::determinant(density)));
+    batch.height[i] = -glm::dot(facing, on_surface);
+    batch.width[i] = see_own_surface ? 0.0f : size.x + size.y + size.z;
+    batch.axis[i] = static_cast<float>(axis);
+    batch.axis_plane[i] = on_surface[axis];
+    batch.axis_cells[i] = static_cast<float>(domain.cells[axis] << (domain.cascades - 1));
+    // View volumes bend planes: only separable warps leave one along an axis where it is.
+    batch.aligned[i] = size[axis] > aligned_cosine && domain.warp.separable() ? 1.0f : 0.0f;
+}
+
+}  // namespace interreflect
+#endif

@@ -1,0 +1,277 @@
+// Where vectors of cones are in a warped grid. Included once for every vector target.
+#if defined(INTERREFLECT_WARP_LANES) == defined(HWY_TARGET_TOGGLE)
+#ifdef INTERREFLECT_WARP_LANES
+#undef INTERREFLECT_WARP_LANES
+#else
+#define INTERREFLECT_WARP_LANES
+#endif
+
+#include <hwy/contrib/math/math-inl.h>
+
+#include "data/domain.h"
+#include "voxels/march/taps-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace interreflect {
+namespace HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+template <class V>
+struct Lanes3 {
+    V x, y, z;
+
+    /// The coordinate of that number, lane by lane.
+    template <class D>
+    HWY_INLINE V of(D d, V axis) const {
+        return hn::IfThenElse(hn::Lt(axis, hn::Set(d, 0.5f)), x, hn::IfThenElse(hn::Lt(axis, hn::Set(d, 1.5f)), y, z));
+    }
+};
+template <class V>
+HWY_INLINE V dot(const Lanes3<V>& a, const Lanes3<V>& b) {
+    return hn::MulAdd(a.x, b.x, hn::MulAdd(a.y, b.y, hn::Mul(a.z, b.z)));
+}
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V dot(D d, const Lanes3<V>& a, const vec3& b) {
+    return dot(a, Lanes3<V>{hn::Set(d, b.x), hn::Set(d, b.y), hn::Set(d, b.z)});
+}
+
+/// A sample of each cone of a vector, in a domain's voxels.
+template <class D, class V = hn::Vec<D>>
+struct LanesAt {
+    Lanes3<V> voxels;  // place; of nested grids, in linear voxels of the finest one
+    Lanes3<V> toward;  // unit direction there
+    V stretch;         // voxels along a linear voxel of the way
+    V density;         // voxels along a linear voxel, the mean over all directions
+    V least_level;     // finest level there is
+    hn::Mask<D> inside;
+};
+
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE Lanes3<V> along(D, const Lanes3<V>& start, const Lanes3<V>& direction, V distance) {
+    return {hn::MulAdd(direction.x, distance, start.x), hn::MulAdd(direction.y, distance, start.y),
+            hn::MulAdd(direction.z, distance, start.z)};
+}
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V within(D d, V p, float size) {
+    return hn::Min(hn::Max(p, hn::Zero(d)), hn::Set(d, size));
+}
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V cube_root(D d, V x) {
+    return exp2_of(d, hn::Mul(log2_of(d, x), hn::Set(d, 1.0f / 3.0f)));
+}
+/// Fills `toward` and `stretch` from voxels along each axis for a linear voxel of the way.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE void set_way(D d, const Lanes3<V>& way, LanesAt<D>& at) {
+    at.stretch = hn::Sqrt(dot(way, way));
+    const V scale = hn::Div(hn::Set(d, 1.0f), hn::Max(at.stretch, hn::Set(d, 1e-20f)));
+    at.toward = {hn::Mul(way.x, scale), hn::Mul(way.y, scale), hn::Mul(way.z, scale)};
+}
+
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V box_exit(D d, const Lanes3<V>& start, const Lanes3<V>& direction, const vec3& size) {
+    return hn::Min(hn::Min(exit_distance(d, start.x, direction.x, size.x), exit_distance(d, start.y, direction.y, size.y)),
+                   exit_distance(d, start.z, direction.z, size.z));
+}
+
+/// data/warp.cpp's curves: value and slope at u in [0, 1].
+struct CubicCurve {
+    template <class D, class V = hn::Vec<D>>
+    static HWY_INLINE void at(D d, float s, V u, V& value, V& slope) {
+        const V square = hn::Mul(u, u), rest = hn::Set(d, 1.0f - s), steep = hn::Set(d, s);
+        value = hn::Mul(u, hn::MulAdd(rest, square, steep));
+        slope = hn::MulAdd(hn::Mul(rest, hn::Set(d, 3.0f)), square, steep);
+    }
+};
+struct LogisticCurve {
+    template <class D, class V = hn::Vec<D>>
+    static HWY_INLINE void at(D d, float s, V u, V& value, V& slope) {
+        const float whole = 1.0f / std::tanh(s);
+        const V t = hn::Tanh(d, hn::Mul(u, hn::Set(d, s)));
+        value = hn::Mul(t, hn::Set(d, whole));
+        slope = hn::Mul(hn::NegMulAdd(t, t, hn::Set(d, 1.0f)), hn::Set(d, s * whole));
+    }
+};
+
+/// Axis by axis about a centre. Beyond the box everything is as on its face, as in a plain grid.
+template <class Curve>
+class SeparableLanes {
+  public:
+    explicit SeparableLanes(const Domain& domain) : size_(domain.cells), steepness_(domain.warp.steepness) {
+        centre_ = domain.warp.centre;
+        for (int axis = 0; axis < 3; ++axis) {
+            below_[axis] = centre_[axis] > 0.0f ? 1.0f / centre_[axis] : 0.0f;
+            const float above = size_[axis] - centre_[axis];
+            above_[axis] = above > 0.0f ? 1.0f / above : 0.0f;
+        }
+    }
+    template <class D, class V = hn::Vec<D>>
+    HWY_INLINE V exit(D d, const Lanes3<V>& start, const Lanes3<V>& direction) const {
+        return box_exit(d, start, direction, size_);
+    }
+    template <class D, class V = hn::Vec<D>>
+    HWY_INLINE LanesAt<D> at(D d, const Lanes3<V>& start, const Lanes3<V>& direction, V distance) const {
+        const Lanes3<V> p = along(d, start, direction, distance);
+        LanesAt<D> at;
+        V sx, sy, sz;
+        at.voxels = {curve(d, 0, p.x, sx), curve(d, 1, p.y, sy), curve(d, 2, p.z, sz)};
+        set_way(d, Lanes3<V>{hn::Mul(direction.x, sx), hn::Mul(direction.y, sy), hn::Mul(direction.z, sz)}, at);
+        at.density = cube_root(d, hn::Mul(hn::Mul(sx, sy), sz));
+        at.least_level = hn::Zero(d);
+        at.inside = hn::Eq(distance, distance);
+        return at;
+    }
+
+  private:
+    template <class D, class V = hn::Vec<D>>
+    HWY_INLINE V curve(D d, int axis, V p, V& slope) const {
+        const V centre = hn::Set(d, centre_[axis]);
+        const V offset = hn::Sub(within(d, p, size_[axis]), centre), length = hn::Abs(offset);
+        const V inverse = hn::IfThenElse(hn::Lt(offset, hn::Zero(d)), hn::Set(d, below_[axis]), hn::Set(d, above_[axis]));
+        const V half = hn::IfThenElse(hn::Lt(offset, hn::Zero(d)), centre, hn::Sub(hn::Set(d, size_[axis]), centre));
+        V value;
+        Curve::at(d, steepness_, hn::Min(hn::Mul(length, inverse), hn::Set(d, 1.0f)), value, slope);
+        slope = hn::Max(slope, hn::Set(d, 1e-3f));  // alpha = 0: a face's voxels are as long as the box
+        return hn::Add(centre, hn::CopySign(hn::Mul(half, value), offset));
+    }
+
+    vec3 size_, centre_, below_, above_;
+    float steepness_;
+};
+
+/// What both view volumes do: space outside of them is unknown, and lets everything through.
+class ViewLanes {
+  public:
+    explicit ViewLanes(const Domain& domain) : warp_(domain.warp), size_(domain.cells), end_(2.0f * domain.view_radius()) {}
+    template <class D, class V = hn::Vec<D>>
+    HWY_INLINE V exit(D d, const Lanes3<V>&, const Lanes3<V>&) const {
+        return hn::Set(d, end_);
+    }
+
+  protected:
+    template <class D, class V = hn::Vec<D>>
+    HWY_INLINE Lanes3<V> in_view(D d, const Lanes3<V>& v) const {
+        return {dot(d, v, warp_.right), dot(d, v, warp_.up), dot(d, v, warp_.forward)};
+    }
+    template <class D, class V = hn::Vec<D>>
+    HWY_INLINE void finish(D d, V volume, LanesAt<D>& at) const {
+        at.density = cube_root(d, hn::Max(volume, hn::Set(d, 1e-30f)));
+        at.least_level = hn::Zero(d);
+        const auto between = [&](V q, float size)
+                                 HWY_ATTR { return hn::And(hn::Ge(q, hn::Zero(d)), hn::Le(q, hn::Set(d, size))); };
+        at.inside = hn::And(at.inside, hn::And(between(at.voxels.x, size_.x),
+                                               hn::And(between(at.voxels.y, size_.y), between(at.voxels.z, size_.z))));
+        at.voxels = {within(d, at.voxels.x, size_.x), within(d, at.voxels.y, size_.y), within(d, at.voxels.z, size_.z)};
+    }
+
+    Warp warp_;
+    vec3 size_;
+    float end_;
+};
+
+class PerspectiveLanes : public ViewLanes {
+  public:
+    using ViewLanes::ViewLanes;
+    template <class D, class V = hn::Vec<D>>
+    HWY_INLINE LanesAt<D> at(D d, const Lanes3<V>& start, const Lanes3<V>& direction, V distance) const {
+        const Lanes3<V> v = in_view(d, along(d, start, direction, distance)), w = in_view(d, direction);
+        const V near = hn::Set(d, warp_.near), one = hn::Set(d, 1.0f), half = hn::Set(d, 0.5f);
+        LanesAt<D> at;
+        at.inside = hn::Ge(v.z, near);
+        const V inverse = hn::Div(one, hn::Max(v.z, near)), x = hn::Mul(v.x, inverse), y = hn::Mul(v.y, inverse);
+        const V kx = hn::Set(d, 0.5f * size_.x / warp_.half_x), ky = hn::Set(d, 0.5f * size_.y / warp_.half_y);
+        const V sx = hn::Mul(kx, inverse), sy = hn::Mul(ky, inverse);
+        V depth, sz;
+        if (warp_.linear_depth) {
+            sz = hn::Set(d, size_.z / (warp_.far - warp_.near));
+            depth = hn::Mul(hn::Sub(v.z, near), sz);
+        } else {
+            const V k = hn::Set(d, size_.z / (1.0f - warp_.near / warp_.far));
+            depth = hn::Mul(k, hn::NegMulAdd(near, inverse, one));
+            sz = hn::Mul(hn::Mul(k, near), hn::Mul(inverse, inverse));
+        }
+        at.voxels = {hn::MulAdd(kx, x, hn::Mul(half, hn::Set(d, size_.x))), hn::MulAdd(ky, y, hn::Mul(half, hn::Set(d, size_.y))),
+                     depth};
+        set_way(d, Lanes3<V>{hn::Mul(sx, hn::NegMulAdd(x, w.z, w.x)), hn::Mul(sy, hn::NegMulAdd(y, w.z, w.y)), hn::Mul(sz, w.z)},
+                at);
+        finish(d, hn::Mul(hn::Mul(sx, sy), sz), at);
+        return at;
+    }
+};
+
+class SphericalLanes : public ViewLanes {
+  public:
+    using ViewLanes::ViewLanes;
+    template <class D, class V = hn::Vec<D>>
+    HWY_INLINE LanesAt<D> at(D d, const Lanes3<V>& start, const Lanes3<V>& direction, V distance) const {
+        const Lanes3<V> v = in_view(d, along(d, start, direction, distance)), w = in_view(d, direction);
+        const V one = hn::Set(d, 1.0f), tiny = hn::Set(d, 1e-12f);
+        const V across2 = hn::Max(hn::MulAdd(v.x, v.x, hn::Mul(v.z, v.z)), tiny), across = hn::Sqrt(across2);
+        const V radius2 = hn::MulAdd(v.y, v.y, across2);
+        const V kx = hn::Set(d, 0.5f * size_.x / warp_.half_x), ky = hn::Set(d, 0.5f * size_.y / warp_.half_y);
+        const float octaves = std::log2(warp_.far / warp_.near);
+        const V kz = hn::Set(d, size_.z / octaves), natural = hn::Set(d, size_.z / (octaves * std::log(2.0f)));
+        LanesAt<D> at;
+        at.inside = hn::Gt(v.z, hn::Zero(d));  // angles lie within 85 degrees of the volume's middle
+        const V azimuth = hn::Atan(d, hn::Div(v.x, hn::Max(v.z, tiny)));
+        const V elevation = hn::Sub(hn::Atan(d, hn::Div(v.y, across)), hn::Set(d, warp_.elevation));
+        const V level = hn::Sub(hn::Mul(hn::Set(d, 0.5f), log2_of(d, radius2)), hn::Set(d, std::log2(warp_.near)));
+        at.voxels = {hn::MulAdd(kx, azimuth, hn::Set(d, 0.5f * size_.x)), hn::MulAdd(ky, elevation, hn::Set(d, 0.5f * size_.y)),
+                     hn::Mul(kz, level)};
+        const V inverse2 = hn::Div(one, radius2), outwards = hn::MulAdd(v.x, w.x, hn::Mul(v.z, w.z));
+        const V turn = hn::Div(hn::Sub(hn::Mul(v.z, w.x), hn::Mul(v.x, w.z)), across2);
+        const V rise = hn::Mul(hn::Sub(hn::Mul(across, w.y), hn::Div(hn::Mul(v.y, outwards), across)), inverse2);
+        const V away = hn::Mul(hn::MulAdd(v.y, w.y, outwards), inverse2);
+        set_way(d, Lanes3<V>{hn::Mul(kx, turn), hn::Mul(ky, rise), hn::Mul(natural, away)}, at);
+        // The three gradients are perpendicular: 1 / across, 1 / radius, 1 / radius.
+        finish(d, hn::Div(hn::Mul(hn::Mul(kx, ky), natural), hn::Mul(across, radius2)), at);
+        return at;
+    }
+};
+
+/// Nested grids: the voxels stay linear, but the finest level depends on the place.
+class NestedLanes {
+  public:
+    explicit NestedLanes(const Domain& domain)
+        : size_(vec3(domain.cells) * static_cast<float>(1 << (domain.cascades - 1))), count_(domain.cascades - 1) {
+        for (int k = 0; k < count_; ++k) {
+            lower_[k] = domain.linear_in(k, vec3(0));
+            upper_[k] = domain.linear_in(k, vec3(domain.cells));
+            band_[k] = domain.band(k);
+        }
+    }
+    template <class D, class V = hn::Vec<D>>
+    HWY_INLINE V exit(D d, const Lanes3<V>& start, const Lanes3<V>& direction) const {
+        return box_exit(d, start, direction, size_);
+    }
+    template <class D, class V = hn::Vec<D>>
+    HWY_INLINE LanesAt<D> at(D d, const Lanes3<V>& start, const Lanes3<V>& direction, V distance) const {
+        const Lanes3<V> p = along(d, start, direction, distance);
+        LanesAt<D> at;
+        at.voxels = {within(d, p.x, size_.x), within(d, p.y, size_.y), within(d, p.z, size_.z)};
+        at.toward = direction;
+        at.stretch = at.density = hn::Set(d, 1.0f);
+        at.inside = hn::Eq(distance, distance);
+        at.least_level = hn::Zero(d);
+        const V one = hn::Set(d, 1.0f);
+        for (int k = 0; k < count_; ++k) {  // Domain::grid_level
+            const auto depth = [&](V q, int axis) HWY_ATTR {
+                return hn::Min(hn::Sub(q, hn::Set(d, lower_[k][axis])), hn::Sub(hn::Set(d, upper_[k][axis]), q));
+            };
+            const V deep = hn::Min(hn::Min(depth(at.voxels.x, 0), depth(at.voxels.y, 1)), depth(at.voxels.z, 2));
+            const V left = hn::Mul(hn::Sub(deep, hn::Set(d, band_[k].x)), hn::Set(d, band_[k].y));
+            at.least_level = hn::Add(at.least_level, hn::Min(hn::Max(hn::Sub(one, left), hn::Zero(d)), one));
+        }
+        return at;
+    }
+
+  private:
+    vec3 size_, lower_[Domain::most_cascades], upper_[Domain::most_cascades];
+    vec2 band_[Domain::most_cascades];
+    int count_;
+};
+
+}  // namespace HWY_NAMESPACE
+}  // namespace interreflect
+HWY_AFTER_NAMESPACE();
+#endif
