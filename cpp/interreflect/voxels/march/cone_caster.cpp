@@ -15,12 +15,14 @@ Counts ConeCaster::cast(std::span<const Cone> cones, ConeBatch& batch) const {
     batch.limited = true;
     for (int i = 0; i < batch.count; ++i) {
         const Cone& cone = cones[static_cast<std::size_t>(i)];
-        set_start(batch, i, domain, domain.to_voxels(cone.position), cone.normal, offset, knobs_.own_surface);
+        const vec3 surface = domain.to_linear(cone.position);
+        set_start(batch, i, domain, surface, cone.normal, offset, knobs_.own_surface);
         vec3 direction = cone.direction;
         batch.limit[i] = cone.distance;
         if (std::isfinite(cone.distance)) {
             // The cone starts off the surface: from there a near light lies elsewhere.
-            const vec3 to_light = direction * (cone.distance / domain.voxel_size) - cone.normal * offset;
+            const vec3 start(batch.x[i], batch.y[i], batch.z[i]);
+            const vec3 to_light = surface + direction * (cone.distance / domain.voxel_size) - start;
             const float distance = glm::length(to_light);
             if (distance > 0.0f) direction = to_light / distance;
             batch.limit[i] = distance - 1.0f;

@@ -111,8 +111,8 @@ ConeCounts march_vector(const Map& map, const LevelTable& table, const ConeSched
     const V width = hn::Load(d, batch.width + first), aligned = hn::Load(d, batch.aligned + first);
     const V axis = hn::Load(d, batch.axis + first), axis_plane = hn::Load(d, batch.axis_plane + first);
     const V axis_cells = hn::Load(d, batch.axis_cells + first);
-    V exit = map.exit(d, start, direction);
-    if (batch.limited) exit = hn::Min(exit, hn::Load(d, batch.limit + first));
+    const V exit = map.exit(d, start, direction);
+    const V limit = batch.limited ? hn::Load(d, batch.limit + first) : hn::Set(d, 1e30f);
     const auto has_plane = hn::Gt(width, zero);
     auto active = hn::FirstN(d, static_cast<std::size_t>(std::min(batch.count - first, lanes)));
     V r = zero, g = zero, b = zero, open = one;
@@ -126,7 +126,8 @@ ConeCounts march_vector(const Map& map, const LevelTable& table, const ConeSched
         const V lod = hn::Min(hn::Max(wanted, at.least_level), hn::Set(d, static_cast<float>(table.last)));
         const V whole = hn::Floor(lod), blend = hn::Sub(lod, whole);
         const V size = exp2_of(d, lod);  // of a texel, voxels
-        active = hn::And(active, hn::Lt(hn::Sub(distance, hn::Div(size, at.density)), exit));
+        const V reach = hn::Div(size, at.density);
+        active = hn::And(active, hn::And(hn::Lt(hn::Sub(distance, reach), exit), hn::Lt(hn::Add(distance, reach), limit)));
         if (hn::AllFalse(d, active)) break;
         counts.steps += static_cast<std::uint64_t>(hn::CountTrue(d, active));
         const auto seeing = hn::And(active, at.inside);

@@ -45,7 +45,7 @@ struct Contribution {
     float area = 0;    // solid part, in faces of a voxel
     float total = 0;   // with the holes of its mask
     vec3 albedo{0};    // sum
-    vec3 position{0};  // sum, in linear voxels from the cell's centre
+    vec3 position{0};  // sum, in linear voxels from Domain::reference of the cell
     vec3 normal{0};    // unit
     float offset = 0;  // of the triangle
     std::uint32_t back = 0;

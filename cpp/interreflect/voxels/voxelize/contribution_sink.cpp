@@ -29,11 +29,11 @@ void ContributionSink::add_warped(const vec3& position, float area, bool solid, 
 
 void ContributionSink::place_part(Contribution& c) const {
     if (warps_samples_) {
-        c.position += (origin_ - domain_.linear_centre(c.cell)) * c.area;
+        c.position += (origin_ - domain_.reference(c.cell)) * c.area;
     } else {
         const vec3 centre = vec3(domain_.coordinates(c.cell)) + 0.5f;
         c.cell += domain_.cell(ivec3(0), triangle_->cascade);
-        if (c.area > 0.0f) c.position = (linear_in_piece(centre + c.position / c.area) - domain_.linear_centre(c.cell)) * c.area;
+        if (c.area > 0.0f) c.position = (linear_in_piece(centre + c.position / c.area) - domain_.reference(c.cell)) * c.area;
     }
     // Areas weigh the parts of a cell against each other: as in space, not as in the warped grid.
     c.position *= linear_area_;

@@ -122,7 +122,7 @@ void write_points(const Voxel& voxel, const vec3& centre, std::size_t i, VoxelGr
 void write_voxel(const Voxel& voxel, std::uint32_t cell, std::size_t i, VoxelGrid& grid) {
     const Domain& domain = grid.domain;
     const float share = 1.0f / voxel.area;
-    const vec3 centre = domain.linear_centre(cell);
+    const vec3 centre = domain.reference(cell);
     grid.cell[i] = cell;
     grid.albedo[i] = voxel.strongest != nullptr ? voxel.strongest->albedo / voxel.strongest->area : voxel.albedo * share;
     grid.emission[i] = voxel.emission * share;

@@ -80,19 +80,44 @@ class Pieces {
     Pieces(const Domain& domain, float bend, const VoxelTriangle& whole, const VisitTriangle& visit)
         : domain_(domain), whole_(whole), visit_(visit), most_bend_(bend), piece_(whole) {}
 
-    /// `triangle`: the whole one, in linear voxels.
+    /// Cuts up the whole triangle, which is in linear voxels.
     void cut_up() {
-        Polygon polygon;
-        polygon.count = 3;
-        for (int i = 0; i < 3; ++i) polygon.corner[i] = {whole_.corner[i], {i == 1 ? 1.0f : 0.0f, i == 2 ? 1.0f : 0.0f}};
-        if (domain_.cascades > 1) return nested(polygon, 0);
+        const std::array<Corner, 3> whole{Corner{whole_.corner[0], {0, 0}}, Corner{whole_.corner[1], {1, 0}},
+                                          Corner{whole_.corner[2], {0, 1}}};
+        if (domain_.cascades > 1) return nested(whole);
         const Warp& warp = domain_.warp;
-        for (const HalfSpace& face : warp.view_volume() ? faces(warp) : faces(vec3(0), vec3(domain_.cells)))
-            polygon = cut(polygon, face);
+        const auto bounds = warp.view_volume() ? faces(warp) : faces(vec3(0), vec3(domain_.cells));
+        bool inside = true;
+        for (const HalfSpace& face : bounds) {
+            const float a = face.of(whole[0].p), b = face.of(whole[1].p), c = face.of(whole[2].p);
+            if (std::max({a, b, c}) < 0.0f) return;
+            inside &= std::min({a, b, c}) >= 0.0f;
+        }
+        if (inside) return flatten(whole, 0, most_halvings);
+        Polygon polygon = polygon_of(whole);
+        for (const HalfSpace& face : bounds) polygon = cut(polygon, face);
         fan(polygon, 0);
     }
 
   private:
+    static Polygon polygon_of(const std::array<Corner, 3>& triangle) {
+        Polygon polygon;
+        polygon.count = 3;
+        std::copy(triangle.begin(), triangle.end(), polygon.corner.begin());
+        return polygon;
+    }
+    /// Most triangles lie in one grid, apart from the finer ones.
+    void nested(const std::array<Corner, 3>& whole) {
+        const vec3 lower = glm::min(glm::min(whole[0].p, whole[1].p), whole[2].p);
+        const vec3 upper = glm::max(glm::max(whole[0].p, whole[1].p), whole[2].p);
+        for (int k = 0; k < domain_.cascades; ++k) {
+            const vec3 first = domain_.linear_in(k, vec3(0)), last = domain_.linear_in(k, vec3(domain_.cells));
+            if (glm::all(glm::greaterThanEqual(lower, first)) && glm::all(glm::lessThan(upper, last)))
+                return flatten(whole, k, most_halvings);
+            const bool apart = glm::any(glm::lessThan(upper, first)) || glm::any(glm::greaterThan(lower, last));
+            if (!apart) return nested(polygon_of(whole), k);
+        }
+    }
     /// What lies in grid `k` belongs to it; what lies outside to the next.
     void nested(Polygon polygon, int k) {
         const vec3 lower = domain_.linear_in(k, vec3(0)), upper = domain_.linear_in(k, vec3(domain_.cells));
