@@ -18,7 +18,7 @@ def studies() -> Sequence[ir.Study]:
     """In a grid about the camera that is not snapped: there the voxels change although nothing moves but the camera."""
     grid = ir.Grid(resolution=128, region=ir.AroundCamera(step=0))
     inner = freed().light_voxels
-    ways = [inner, *(ir.BlendHistory(technique=inner, weight=weight) for weight in WEIGHTS[1:])]
+    ways = [inner, *(ir.BlendHistory(light_voxels=inner, weight=weight) for weight in WEIGHTS[1:])]
     return [drawn("last frame blended in", [flickering(grid=grid, light_voxels=way) for way in ways], size=SIZE)]
 
 

@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 import interreflect as ir
 from experiments.freed.pipeline import drawn
 from experiments.shared.panels import as_light, panels, picture
+from experiments.shared.scenes import sunny_sponza
 from experiments.shared.voxel_picture import VoxelPicture
 
 TEXELS = (64, 128, 256, 512, 1024, 4096)
@@ -19,7 +20,7 @@ RESOLUTION = 128
 def studies() -> Sequence[ir.Study]:
     grid = ir.Grid(resolution=RESOLUTION)
     ways = [VoxelPicture(grid=grid, light_voxels=ir.ShadowMapInjection(size=texels), exact=False) for texels in TEXELS]
-    return [drawn("shadow maps from coarse to fine", ways)]
+    return [drawn("shadow maps from coarse to fine", ways, sunny_sponza())]
 
 
 def table(records: ir.Records) -> pd.DataFrame:

@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 import interreflect as ir
 from experiments.freed.pipeline import drawn
 from experiments.shared.panels import as_light, panels, picture
+from experiments.shared.scenes import sunny_sponza
 from experiments.shared.voxel_picture import VoxelPicture
 
 NAMES = ("lit: albedo / pi times irradiance (as corrected)", "base colour (as printed)")
@@ -16,7 +17,7 @@ NAMES = ("lit: albedo / pi times irradiance (as corrected)", "base colour (as pr
 
 def studies() -> Sequence[ir.Study]:
     ways = [ir.ShadowMapInjection(radiance=radiance) for radiance in ("lit", "base_colour")]
-    return [drawn("injected radiance", [VoxelPicture(light_voxels=way, exact=False) for way in ways])]
+    return [drawn("injected radiance", [VoxelPicture(light_voxels=way, exact=False) for way in ways], sunny_sponza())]
 
 
 def chart(records: ir.Records) -> Figure:

@@ -34,8 +34,8 @@ class FrustumPicture(Method):
         ahead = np.subtract(camera.target, camera.position)
         ahead /= np.linalg.norm(ahead)
         extent = float(np.ptp(np.asarray(view.scene.bounds), axis=0).max())
-        eye = position + extent * (0.75 * up + 0.55 * np.cross(ahead, up) - 0.1 * ahead)
-        outside = dataclasses.replace(camera, position=tuple(eye), target=tuple(position + 0.4 * extent * ahead), fov_x=60)
+        eye = position + extent * (1.1 * up + 0.7 * np.cross(ahead, up) - 0.3 * ahead)
+        outside = dataclasses.replace(camera, position=tuple(eye), target=tuple(position + 0.5 * extent * ahead), fov_x=65)
         with profile.stage("view"):
             picture = voxel_view(voxels, outside, view.size).image
         return picture, np.zeros_like(picture)

@@ -17,6 +17,12 @@ def sponza() -> ir.Scene:
     return load("sponza_crytek/scene.toml")
 
 
+def sunny_sponza() -> ir.Scene:
+    """Sponza without its sky: for what is about the voxels that a lamp hits."""
+    scene = sponza()
+    return scene.replace(lights=[light for light in scene.lights if not isinstance(light, ir.EnvironmentLight)])
+
+
 def glossy_sponza() -> ir.Scene:
     """The same with a polished floor and the roughness of its maps: for what is about reflections (no normal maps)."""
     return load("sponza_crytek/glossy.toml")

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 import interreflect as ir
 from interreflect import _core
+from interreflect.coverage import voxel_coverage
 from interreflect.cubes import VoxelView, voxel_view
 from interreflect.frame import Image
 from interreflect.methods.knobs import knob, stage
@@ -24,9 +25,10 @@ PASSED = 2.0
 
 @method
 class VoxelPicture(Method):
-    """Voxels as shaded cubes. Counts of the stage `compare`: `voxels`; `exact`, those that `ExactOverlap` finds; `missing` and `extra`
-    against it; `seen` pixels that show a surface and `cracked` ones of these, through which one looks past it between the voxels; `lit`
-    voxels with radiance.
+    """Voxels as shaded cubes.
+
+    Counts of the stage `compare`: `voxels`, `exact`, `missing`, `holes` and `extra` as `voxel_coverage` has them; `seen` pixels that show
+    a surface and `cracked` ones of these, through which one looks past it between the voxels. Of `light_voxels`: `lit` ones with radiance.
 
     light_voxels=None shows albedo; prefilter=None the voxels themselves, else a level of their pyramid.
     """
@@ -63,7 +65,7 @@ class VoxelPicture(Method):
 
 def compare(scene: ir.Scene, voxels: Any, drawn: VoxelView, view: View) -> dict[str, int]:
     """How voxels differ from those that the surface touches, and how far one sees through them."""
-    truth = voxelize(_core.ExactOverlap(), scene, voxels.domain)
+    coverage = voxel_coverage(voxels, voxelize(_core.ExactOverlap(), scene, voxels.domain))
     gbuffer = trace_gbuffer(scene, view.camera, view.size)
     position, depth = gbuffer.position.reshape(-1, 3), np.array(gbuffer.depth)
     place = voxels.domain.to_voxels(position)
@@ -72,10 +74,11 @@ def compare(scene: ir.Scene, voxels: Any, drawn: VoxelView, view: View) -> dict[
     size = np.full(depth.shape, np.inf)
     size[seen] = diagonals(voxels.domain, position[seen.ravel()])
     return {
-        "voxels": len(voxels),
-        "exact": len(truth),
-        "missing": len(np.setdiff1d(truth.cell, voxels.cell)),
-        "extra": len(np.setdiff1d(voxels.cell, truth.cell)),
+        "voxels": coverage.voxels,
+        "exact": coverage.exact,
+        "missing": coverage.missing,
+        "holes": coverage.holes,
+        "extra": coverage.extra,
         "faces": drawn.faces,
         "seen": int(seen.sum()),
         "cracked": int(cracks(depth, drawn.depth, size)[seen].sum()),
