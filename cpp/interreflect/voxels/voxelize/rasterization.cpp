@@ -1,7 +1,6 @@
 #include "voxels/voxelize/rasterization.h"
 
 #include <algorithm>
-#include <optional>
 #include <span>
 #include <stdexcept>
 
@@ -114,17 +113,12 @@ void rasterize(const VoxelTriangle& t, const LinearBox& box, int oversampling, s
     refuse_longer_than_most_voxels(max_component(p.upper - p.lower) * p.voxels);
     const Edges edges(p);
     Span covered[most_samples];
-    std::optional<Fragments> fragments;  // most small triangles cover no sample
+    Fragments fragments(t, p, samples, sink);
     const int last = p.last_of(1, p.upper.y);
     for (int v = p.first_of(1, p.lower.y); v <= last; ++v) {
-        bool any = false;
-        for (std::size_t s = 0; s < samples.size(); ++s) {
+        for (std::size_t s = 0; s < samples.size(); ++s)
             covered[s] = edges.covered(static_cast<float>(v) + samples[s].y, samples[s].x, p);
-            any |= covered[s].first < covered[s].end;
-        }
-        if (!any) continue;
-        if (!fragments) fragments.emplace(t, p, samples, sink);
-        fragments->row(v, covered);
+        fragments.row(v, covered);
     }
 }
 

@@ -25,23 +25,17 @@ struct Patch {
 
 class Tessellator {
   public:
-    Tessellator(const Tessellation& technique, const VoxelTriangle& t, const LinearBox& box, bool merge, ContributionSink& sink)
+    Tessellator(const Tessellation& technique, const VoxelTriangle& t, const LinearBox& box, ContributionSink& sink)
         : triangle_(t),
           box_(box),
           spacing_(static_cast<float>(technique.spacing)),
           most_(technique.max_level),
           split_(technique.split),
-          merge_(merge && t.mask == nullptr),
           look_(t, std::min(t.area, spacing_ * spacing_)),
           sink_(sink) {}
 
     void tessellate(const Patch& patch) {
         if (triangle_.crosses && outside(patch)) return;
-        const vec3 cell = glm::floor(patch.corner[0]);
-        if (merge_ && cell == glm::floor(patch.corner[1]) && cell == glm::floor(patch.corner[2])) {
-            add(patch, vec3(1.0f / 3.0f), patch.area);
-            return;
-        }
         std::array<float, 3> length;
         for (int i = 0; i < 3; ++i) length[i] = glm::distance(patch.corner[i], patch.corner[(i + 1) % 3]);
         const auto longest = static_cast<int>(std::max_element(length.begin(), length.end()) - length.begin());
@@ -86,32 +80,17 @@ class Tessellator {
         tessellate(half(next));
     }
     void emit(const Patch& patch, const TessellationLevels& levels) {
+        const vec3 cell = glm::floor(patch.corner[0]);
+        if (cell == glm::floor(patch.corner[1]) && cell == glm::floor(patch.corner[2])) {
+            add(patch, vec3(1.0f / 3.0f), patch.area);
+            return;
+        }
         tessellation_rows(levels, [&](const vec3& start, const vec3& along, int count, float share) {
-            if (merge_)
-                add_runs(patch, start, along, count, share * patch.area);
-            else
-                for (int j = 0; j < count; ++j) add(patch, start + along * static_cast<float>(j), share * patch.area);
+            for (int j = 0; j < count; ++j) add(patch, start + along * static_cast<float>(j), share * patch.area);
         });
     }
-    static vec3 mix(const Patch& patch, const vec3& weights) {
-        return patch.corner[0] * weights.x + patch.corner[1] * weights.y + patch.corner[2] * weights.z;
-    }
-    /// Vertices of a row that follow one another in one cell look up their texel once, in their middle.
-    void add_runs(const Patch& patch, const vec3& start, const vec3& along, int count, float area) {
-        const vec3 first = mix(patch, start), step = mix(patch, along);
-        int begin = 0;
-        vec3 cell = glm::floor(first);
-        for (int j = 1; j <= count; ++j) {
-            const vec3 next = glm::floor(first + step * static_cast<float>(j));
-            if (j < count && next == cell) continue;
-            const float middle = 0.5f * static_cast<float>(begin + j - 1);
-            add(patch, start + along * middle, first + step * middle, area * static_cast<float>(j - begin));
-            begin = j;
-            cell = next;
-        }
-    }
-    void add(const Patch& patch, const vec3& weights, float area) { add(patch, weights, mix(patch, weights), area); }
-    void add(const Patch& patch, const vec3& weights, const vec3& position, float area) {
+    void add(const Patch& patch, const vec3& weights, float area) {
+        const vec3 position = patch.corner[0] * weights.x + patch.corner[1] * weights.y + patch.corner[2] * weights.z;
         if (triangle_.uniform()) {
             sink_.add(position, area, true, triangle_.material->albedo, triangle_.material->emission);
             return;
@@ -126,7 +105,7 @@ class Tessellator {
     const LinearBox& box_;
     float spacing_;
     int most_;
-    bool split_, merge_;
+    bool split_;
     Appearance look_;
     ContributionSink& sink_;
 };
@@ -138,9 +117,8 @@ VoxelGrid voxelize(const Tessellation& technique, const Scene& scene, const Doma
     const Handing handing = technique.levels == "warped" ? Handing::pieces : Handing::at_once;
     const Domain one_grid{.cells = domain.cells};
     const LinearBox box(handing == Handing::pieces ? one_grid : domain, handing);
-    const bool in_cells = handing == Handing::pieces || domain.plain();  // else the sink finds a vertex's cell
     return voxelize_triangles(scene, domain, handing, [&](const VoxelTriangle& t, ContributionSink& sink) {
-        Tessellator(technique, t, box, in_cells, sink)
+        Tessellator(technique, t, box, sink)
             .tessellate({{t.corner[0], t.corner[1], t.corner[2]}, {t.texcoord[0], t.texcoord[1], t.texcoord[2]}, t.area});
     });
 }
