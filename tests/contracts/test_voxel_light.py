@@ -173,9 +173,10 @@ def test_more_samples_converge_to_the_same_light():
 def test_a_uniform_world_stays_uniform(coverage):
     # One sheet through a single layer of voxels: its colour is the same at every level, whatever the opacity.
     scene = scene_of(floor(albedo=(0.5, 0.25, 0.125)), lights=[SUN])
-    pyramid = ir.prefilter(coverage, lit_of(ir.TracedLighting(both_sides=True), scene, 32))
+    sides = coverage != ir.SphericalHarmonicVoxels()  # whose first volume is the mean of both sides
+    pyramid = ir.prefilter(coverage, lit_of(ir.TracedLighting(both_sides=sides), scene, 32))
     for i in range(pyramid.levels):
-        for face in range(pyramid.faces):
+        for face in range(1 if pyramid.faces == 4 else pyramid.faces):  # harmonics: test_prefilter.py
             if face & 2 if pyramid.faces == 8 else face == 2:
                 continue  # from below one sees the sheet's back, which has no light
             level = pyramid.level(i, face)
@@ -381,7 +382,7 @@ def test_bytes_are_those_of_the_arrays(coverage):
     assert lit.bytes == lit.radiance.nbytes
     pyramid = ir.prefilter(coverage, lit)
     sizes = [np.array(pyramid.level(i).shape[:3]) + 2 for i in range(pyramid.levels)]  # one texel of border on all sides
-    assert pyramid.bytes == sum(8 * s.prod() * (pyramid.faces if i > 0 or pyramid.faces == 8 else 1) for i, s in enumerate(sizes))
+    assert pyramid.bytes == sum(8 * s.prod() * (pyramid.faces if i > 0 or pyramid.faces in (4, 8) else 1) for i, s in enumerate(sizes))
 
 
 def test_turned_triangles_turn_the_front():

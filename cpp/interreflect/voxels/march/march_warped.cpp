@@ -68,7 +68,7 @@ struct Sight {
 HWY_INLINE void look(const LevelTable& table, unsigned bits, Sight& s) {
     const auto level_of = [&](int number) HWY_ATTR -> const LevelView& { return table.views[number]; };
 #if HWY_MAX_BYTES >= 64
-    if (table.views[table.last].faces != 6) {
+    if (one_volume(table.views[table.last])) {
         const hn::ScalableTag<float> d;
         alignas(64) float weights[4 * max_lanes];
         column_weights(d, s.fine, s.coarse, hn::Load(d, s.blend), weights);
@@ -146,8 +146,7 @@ ConeCounts march_vector(const Map& map, const LevelTable& table, const ConeSched
         uint8_t bytes[8] = {};
         hn::StoreMaskBits(d, seeing, bytes);
         look(table, static_cast<unsigned>(bytes[0]) | (static_cast<unsigned>(bytes[1]) << 8), sight);
-        counts.fetches += 2 * static_cast<std::uint64_t>(hn::CountTrue(d, seeing)) *
-                          static_cast<std::uint64_t>(table.views[table.last].faces == 6 ? 3 : 1);
+        counts.fetches += 2 * static_cast<std::uint64_t>(hn::CountTrue(d, seeing)) * fetches_of(table.views[table.last]);
 
         V tr, tg, tb, ta;
         hn::LoadInterleaved4(d, sight.colour, tr, tg, tb, ta);

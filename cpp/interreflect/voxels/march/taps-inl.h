@@ -110,14 +110,27 @@ HWY_INLINE void store_octants(D d, V dx, V dy, V dz, int* octants) {
     hn::Store(hn::Or(hn::Or(bit(dx, 1), bit(dy, 2)), bit(dz, 4)), di, octants);
 }
 
-/// What a cone sees of a level: its one volume, the one of its octant, or three of its six blended by the squared direction.
-/// `direction`: x of it, then y and z `stride` floats further each.
+/// How many trilinear taps sample() takes.
+HWY_INLINE std::uint64_t fetches_of(const LevelView& level) { return level.faces == 4 ? 4 : level.faces == 6 ? 3 : 1; }
+
+/// Whether a cone reads one volume only, which sample_both can do for two levels at once.
+HWY_INLINE bool one_volume(const LevelView& level) { return level.faces == 1 || level.faces == 8; }
+
+/// What a cone sees of a level: its one volume, the one of its octant, the sum of its harmonics, or three of its six faces
+/// blended by the squared direction. `direction`: x of it, then y and z `stride` floats further each.
 HWY_INLINE hn::Vec<decltype(d4)> sample(const LevelView& level, const Taps& taps, int lane, const float* direction, int stride,
                                         int octant) {
     const Half* at = level.texels + taps.offset[lane];
     if (level.faces == 8) at += level.volume * static_cast<std::size_t>(octant);
     const float fx = taps.fx[lane], fy = taps.fy[lane], fz = taps.fz[lane];
-    if (level.faces != 6) return tap(at, level.row, level.slice, fx, fy, fz);
+    if (one_volume(level)) return tap(at, level.row, level.slice, fx, fy, fz);
+    if (level.faces == 4) {
+        auto seen = tap(at, level.row, level.slice, fx, fy, fz);
+        for (int axis = 0; axis < 3; ++axis)
+            seen = hn::MulAdd(tap(at + level.volume * static_cast<std::size_t>(axis + 1), level.row, level.slice, fx, fy, fz),
+                              hn::Set(d4, direction[axis * stride]), seen);
+        return hn::Max(seen, hn::Zero(d4));
+    }
     auto sum = hn::Zero(d4);
     for (int axis = 0; axis < 3; ++axis) {
         const float along = direction[axis * stride];
@@ -166,7 +179,7 @@ template <class D>
 HWY_INLINE void sample_lanes(D d, unsigned bits, const LevelView& l0, const Taps& fine, const LevelView* l1, const Taps& coarse,
                              float blend, const float* directions, const int* octants, float* colour) {
 #if HWY_MAX_BYTES >= 64
-    if (l1 != nullptr && l1->faces != 6) {
+    if (l1 != nullptr && one_volume(*l1)) {
         alignas(64) float weights[4 * max_lanes];
         column_weights(d, fine, coarse, hn::Set(d, blend), weights);
         for (unsigned left = bits; left != 0; left &= left - 1) {

@@ -16,16 +16,16 @@ namespace {
 
 /// Volume coverage: the mean. Surface coverage: twice the mean (a quarter of the sum of eight), brought back to opacity 1 where
 /// it is more. Premultiplied radiance follows opacity, so its colour is the mean weighted by opacity.
-HWY_INLINE V reduce(V mean, const IsotropicFilter& filter) {
+HWY_INLINE V gain(V mean, Coverage coverage) {
     const D d;
-    if (filter.coverage == Coverage::surface)
-        mean = hn::Mul(mean, hn::Min(hn::Set(d, 2.0f), hn::Div(hn::Set(d, 1.0f), hn::Max(alpha_of(mean), hn::Set(d, 1e-6f)))));
-    return filter.eight_bits ? eight_bits(mean) : mean;
+    const V one = hn::Set(d, 1.0f);
+    if (coverage == Coverage::volume) return one;
+    return hn::Min(hn::Set(d, 2.0f), hn::Div(one, hn::Max(alpha_of(mean), hn::Set(d, 1e-6f))));
 }
 
 /// The rows of finer texels that a row of coarser ones is made of, and their weights.
 struct Rows {
-    const std::uint16_t* row[16];
+    const std::uint16_t* row[16];  // of the first volume
     float weight[16];
     int count = 0;
 };
@@ -50,14 +50,14 @@ HWY_INLINE Rows rows_below(const LevelView& fine, int y, int z, const IsotropicF
 
 /// The weighted sum of rows, `count` halves long, as floats. Returns whether any of it is not air.
 template <class DX>
-HWY_INLINE bool add_rows(DX d, const Rows& rows, std::size_t begin, std::size_t count, float* sums) {
+HWY_INLINE bool add_rows(DX d, const Rows& rows, std::size_t volume, std::size_t begin, std::size_t count, float* sums) {
     const hn::Rebind<hwy::float16_t, DX> half;
     auto any = hn::Zero(d);
     const std::size_t lanes = hn::Lanes(d);
     for (std::size_t i = begin; i + lanes <= count; i += lanes) {
         auto sum = hn::Zero(d);
         for (int k = 0; k < rows.count; ++k)
-            sum = hn::MulAdd(hn::PromoteTo(d, hn::LoadU(half, reinterpret_cast<const hwy::float16_t*>(rows.row[k] + i))),
+            sum = hn::MulAdd(hn::PromoteTo(d, hn::LoadU(half, reinterpret_cast<const hwy::float16_t*>(rows.row[k] + volume + i))),
                              hn::Set(d, rows.weight[k]), sum);
         hn::StoreU(sum, d, sums + i);
         any = hn::Or(any, sum);
@@ -65,29 +65,72 @@ HWY_INLINE bool add_rows(DX d, const Rows& rows, std::size_t begin, std::size_t 
     return !hn::AllTrue(d, hn::Eq(any, hn::Zero(d)));
 }
 
-/// `sums`: room for the finer level's row, its border and one texel more.
-void reduce_slice(const LevelView& fine, const LevelView& coarse, int z, const IsotropicFilter& filter, float* sums) {
+/// What a row of coarser texels is made of: the rows below it summed, a line of floats for each volume. False where all is air.
+HWY_INLINE bool sum_rows(const LevelView& fine, const Rows& rows, int volumes, std::size_t line, float* sums) {
     const D d;
     const hn::ScalableTag<float> wide;
     const std::size_t halves = 4 * (static_cast<std::size_t>(fine.nx) + 2), whole = halves / hn::Lanes(wide) * hn::Lanes(wide);
-    const int reach = filter.tent ? 1 : 0, taps = 2 + 2 * reach;
-    const float* weights = filter.tent ? tent_weights : box_weights;
-    for (int y = 0; y < coarse.ny; ++y) {
-        std::uint16_t* out = coarse.texels + at(coarse, 0, y, z);
-        const Rows rows = rows_below(fine, y, z, filter);
-        const bool some = add_rows(wide, rows, 0, halves, sums), rest = add_rows(d, rows, whole, halves, sums);
-        if (!some && !rest) {
-            __builtin_memset(out, 0, static_cast<std::size_t>(coarse.nx) * 4 * sizeof(*out));
-            continue;
-        }
+    for (int v = 0; v < volumes; ++v, sums += line) {
+        const std::size_t volume = static_cast<std::size_t>(v) * fine.volume;
+        const bool some = add_rows(wide, rows, volume, 0, halves, sums), rest = add_rows(d, rows, volume, whole, halves, sums);
+        if (v == 0 && !some && !rest) return false;
         hn::StoreU(hn::Zero(d), d, sums + halves);
         if ((fine.nx & 1) != 0) hn::StoreU(hn::Zero(d), d, sums + halves - 4);
-        for (int x = 0; x < coarse.nx; ++x, out += 4) {
-            const float* first = sums + 4 * (2 * x + 1 - reach);
-            V sum = hn::Zero(d);
-            for (int i = 0; i < taps; ++i) sum = hn::MulAdd(hn::LoadU(d, first + 4 * i), hn::Set(d, weights[i]), sum);
-            store(reduce(sum, filter), out);
+    }
+    return true;
+}
+
+/// `sums`: for each volume, room for the finer level's row, its border and one texel more.
+void reduce_slice(const LevelView& fine, const LevelView& coarse, int z, const IsotropicFilter& filter, float* sums) {
+    const D d;
+    const int reach = filter.tent ? 1 : 0, taps = 2 + 2 * reach;
+    const float* weights = filter.tent ? tent_weights : box_weights;
+    const std::size_t line = 4 * (static_cast<std::size_t>(fine.nx) + 3);
+    for (int y = 0; y < coarse.ny; ++y) {
+        std::uint16_t* row = coarse.texels + at(coarse, 0, y, z);
+        if (!sum_rows(fine, rows_below(fine, y, z, filter), filter.volumes, line, sums)) {
+            for (std::size_t v = 0; v < static_cast<std::size_t>(filter.volumes); ++v)
+                __builtin_memset(row + v * coarse.volume, 0, static_cast<std::size_t>(coarse.nx) * 4 * sizeof(*row));
+            continue;
         }
+        for (int x = 0; x < coarse.nx; ++x) {
+            V scale = hn::Zero(d);
+            for (std::size_t v = 0; v < static_cast<std::size_t>(filter.volumes); ++v) {
+                const float* first = sums + v * line + 4 * (2 * x + 1 - reach);
+                V mean = hn::Zero(d);
+                for (int i = 0; i < taps; ++i) mean = hn::MulAdd(hn::LoadU(d, first + 4 * i), hn::Set(d, weights[i]), mean);
+                if (v == 0) scale = gain(mean, filter.coverage);
+                const V value = hn::Mul(mean, scale);
+                store(filter.eight_bits ? eight_bits(value) : value, row + 4 * x + v * coarse.volume);
+            }
+        }
+    }
+}
+
+/// The four volumes of slices 2 z and 2 z + 1. Of a step between two hemispheres band 0 is the mean, and band 1, whose three
+/// functions are the direction's coordinates c with mean c^2 = 1/3, is 3 times the mean of (B - F)/2 |d . n|: 3/4 (B - F) n.
+void write_slices_harmonics(const LevelView& finest, const VoxelView& voxels, int z) {
+    const D d;
+    VoxelView none = voxels;
+    none.end = none.begin;
+    LevelView volumes[4] = {finest, finest, finest, finest};
+    for (std::size_t v = 0; v < 4; ++v) {
+        volumes[v].texels += v * finest.volume;
+        write_slices(volumes[v], none, z, false);
+    }
+    for (std::size_t i = voxels.begin; i < voxels.end; ++i) {
+        const auto cell = static_cast<int>(voxels.cell[i]);
+        const int line = cell / finest.nx, x = cell % finest.nx, y = line % finest.ny, vz = line / finest.ny;
+        const V front = premultiplied(voxels.radiance + 3 * i, voxels.opacity[i], voxels.inverse_scale);
+        if (voxels.back == nullptr) {
+            write_voxel(volumes[0], x, y, vz, front);
+            continue;
+        }
+        const V back = premultiplied(voxels.back + 3 * i, voxels.opacity[i], voxels.inverse_scale), half = hn::Set(d, 0.5f);
+        write_voxel(volumes[0], x, y, vz, hn::Mul(hn::Add(front, back), half));
+        const V step = hn::Mul(hn::Sub(back, front), hn::Set(d, 0.75f));  // opacity cancels
+        for (int axis = 0; axis < 3; ++axis)
+            write_voxel(volumes[axis + 1], x, y, vz, hn::Mul(step, hn::Set(d, voxels.points[i].normal[axis])));
     }
 }
 
@@ -101,6 +144,28 @@ namespace interreflect {
 namespace {
 HWY_EXPORT(reduce_slice);
 HWY_EXPORT(write_slices);
+HWY_EXPORT(write_slices_harmonics);
+
+/// The finest level by `write(its view, slice)`, the others from the one below.
+template <class Write>
+void build_levels(Pyramid& pyramid, const IsotropicFilter& filter, const Write& write) {
+    const auto reduce = [&](const LevelView& fine, const LevelView& coarse, int z) {
+        thread_local std::vector<float> sums;
+        sums.resize(4 * (static_cast<std::size_t>(fine.nx) + 3) * static_cast<std::size_t>(filter.volumes));
+        HWY_DYNAMIC_DISPATCH(reduce_slice)(fine, coarse, z, filter, sums.data());
+    };
+    const LevelView finest = view(pyramid.levels[0]);
+    const bool more = pyramid.levels.size() > 1;
+    parallel_pieces(static_cast<std::size_t>((finest.nz + 1) / 2), [&](std::size_t piece) {
+        const int z = static_cast<int>(piece);
+        write(finest, z);
+        if (more && !filter.tent) reduce(finest, view(pyramid.levels[1]), z);
+    });
+    // The tent reaches into slices that other pieces write.
+    if (more && filter.tent) over_slices(pyramid.levels[1], [&](int z) { reduce(finest, view(pyramid.levels[1]), z); });
+    reduce_coarse(pyramid, reduce);
+}
+
 }  // namespace
 
 Pyramid build_isotropic(Coverage coverage, const IsotropicKnobs& knobs, const LitVoxels& lit) {
@@ -109,21 +174,20 @@ Pyramid build_isotropic(Coverage coverage, const IsotropicKnobs& knobs, const Li
     const float scale = radiance_scale(lit);  // refuses what is not finite
     pyramid.scale = filter.eight_bits ? 1.0f : scale;
     const VoxelView voxels = view(lit, pyramid.scale);
-    const auto reduce = [&](const LevelView& fine, const LevelView& coarse, int z) {
-        thread_local std::vector<float> sums;
-        sums.resize(4 * (static_cast<std::size_t>(fine.nx) + 3));
-        HWY_DYNAMIC_DISPATCH(reduce_slice)(fine, coarse, z, filter, sums.data());
-    };
-    const LevelView finest = view(pyramid.levels[0]);
-    const bool more = pyramid.levels.size() > 1;
-    parallel_pieces(static_cast<std::size_t>((finest.nz + 1) / 2), [&](std::size_t piece) {
-        const int z = static_cast<int>(piece);
+    build_levels(pyramid, filter, [&](const LevelView& finest, int z) {
         HWY_DYNAMIC_DISPATCH(write_slices)(finest, slices_of(voxels, pyramid.domain, z), z, filter.eight_bits);
-        if (more && !filter.tent) reduce(finest, view(pyramid.levels[1]), z);
     });
-    // The tent reaches into slices that other pieces write.
-    if (more && filter.tent) over_slices(pyramid.levels[1], [&](int z) { reduce(finest, view(pyramid.levels[1]), z); });
-    reduce_coarse(pyramid, reduce);
+    pyramid.counts.voxels = lit.grid->size();
+    return pyramid;
+}
+
+Pyramid build_harmonics(const LevelKnobs& knobs, const LitVoxels& lit) {
+    Pyramid pyramid = make_levels(lit.grid->domain, 4, knobs);
+    pyramid.scale = radiance_scale(lit);
+    const VoxelView voxels = view(lit, pyramid.scale);
+    build_levels(pyramid, {Coverage::surface, false, false, 4}, [&](const LevelView& finest, int z) {
+        HWY_DYNAMIC_DISPATCH(write_slices_harmonics)(finest, slices_of(voxels, pyramid.domain, z), z);
+    });
     pyramid.counts.voxels = lit.grid->size();
     return pyramid;
 }

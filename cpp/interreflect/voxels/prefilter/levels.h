@@ -10,9 +10,11 @@ namespace interreflect {
 
 /// How eight texels become one.
 enum class Coverage { volume, surface };
+/// Of one opacity for all directions; of several volumes the first one's opacity scales all.
 struct IsotropicFilter {
     Coverage coverage;
     bool tent, eight_bits;
+    int volumes = 1;
 };
 
 /// A level as plain numbers, in halves: kernels of several targets share no functions.
@@ -71,6 +73,9 @@ void reduce_coarse(Pyramid& pyramid, const Reduce& reduce) {
 
 /// Every level of one face: the finest one cleared and written from the voxels, each other one reduced from the one below it.
 Pyramid build_isotropic(Coverage coverage, const IsotropicKnobs& knobs, const LitVoxels& lit);
+
+/// Four volumes: the mean radiance and opacity, and what the radiance gains per unit of the direction along x, y and z.
+Pyramid build_harmonics(const LevelKnobs& knobs, const LitVoxels& lit);
 
 /// Six faces from the second level on.
 Pyramid build_anisotropic(const LevelKnobs& knobs, const LitVoxels& lit);
