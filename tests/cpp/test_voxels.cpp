@@ -42,11 +42,13 @@ TEST(Pyramid, BordersRepeatTheNearestInnerTexelAtEveryLevelAndFace) {
     const auto some = [](const ivec3& at) { return (at.x * 7 + at.y * 5 + at.z * 3) % 4 != 0; };
     VolumeCoverage tent;
     tent.kernel = "tent";
+    OctantCoverage columns;
+    columns.opacity = "columns";
     for (const ivec3& cells : {ivec3(8, 8, 8), ivec3(7, 3, 5), ivec3(1, 9, 2), ivec3(1, 1, 1)}) {
         const LitVoxels lit = make_lit(cells, some);
         for (const Pyramid& pyramid : {prefilter(SurfaceCoverage{}, lit), prefilter(VolumeCoverage{}, lit),
                                        prefilter(Anisotropic{}, lit), prefilter(OctantCoverage{}, lit),
-                                       prefilter(SphericalHarmonicVoxels{}, lit), prefilter(tent, lit)})
+                                       prefilter(SphericalHarmonicVoxels{}, lit), prefilter(tent, lit), prefilter(columns, lit)})
             for (const auto& level : pyramid.levels)
                 for (int face = 0; face < level.faces; ++face)
                     for (int z = -1; z <= level.size.z; ++z)

@@ -16,6 +16,19 @@ struct LevelKnobs {
               Unit::none, between(0, 11)}};
 };
 
+/// Of filters that keep surfaces opaque.
+struct OpacityKnob {
+    std::string opacity = "sum";
+
+    bool operator==(const OpacityKnob&) const = default;
+    static constexpr auto params = std::tuple{
+        Param{"opacity", &OpacityKnob::opacity,
+              "how opaque a texel is: `sum`, a quarter of the sum of the eight below it, clamped, as in the paper (slanted walls "
+              "leak); `columns`, the share of its cross-section that is blocked along the axis that sees most, from half a texel "
+              "before it to half a texel behind (slanted walls stay closed, small things look larger)",
+              Unit::none, one_of("sum|columns")}};
+};
+
 /// Of filters whose texels look alike from all sides.
 struct IsotropicKnobs : LevelKnobs {
     std::string kernel = "box";

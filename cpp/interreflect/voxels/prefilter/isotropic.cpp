@@ -23,6 +23,12 @@ HWY_INLINE V gain(V mean, Coverage coverage) {
     return hn::Min(hn::Set(d, 2.0f), hn::Div(one, hn::Max(alpha_of(mean), hn::Set(d, 1e-6f))));
 }
 
+HWY_INLINE V to_columns(V mean, const LevelView& fine, int x, int y, int z) {
+    const D d;
+    const float found = hn::ExtractLane(mean, 3);
+    return found > 0.0f ? hn::Set(d, column_opacity(fine, x, y, z) / found) : hn::Zero(d);
+}
+
 /// The rows of finer texels that a row of coarser ones is made of, and their weights.
 struct Rows {
     const std::uint16_t* row[16];  // of the first volume
@@ -30,9 +36,6 @@ struct Rows {
     int count = 0;
 };
 constexpr float tent_weights[4] = {0.125f, 0.375f, 0.375f, 0.125f}, box_weights[2] = {0.5f, 0.5f};
-
-/// A texel beyond an odd size is air; beyond an even one the border repeats the outermost, which keeps all of its weight then.
-HWY_INLINE bool is_air(int at, int size) { return at >= size && (at > size || (size & 1) != 0); }
 
 HWY_INLINE Rows rows_below(const LevelView& fine, int y, int z, const IsotropicFilter& filter) {
     const int reach = filter.tent ? 1 : 0, taps = 2 + 2 * reach;
@@ -99,7 +102,7 @@ void reduce_slice(const LevelView& fine, const LevelView& coarse, int z, const I
                 const float* first = sums + v * line + 4 * (2 * x + 1 - reach);
                 V mean = hn::Zero(d);
                 for (int i = 0; i < taps; ++i) mean = hn::MulAdd(hn::LoadU(d, first + 4 * i), hn::Set(d, weights[i]), mean);
-                if (v == 0) scale = gain(mean, filter.coverage);
+                if (v == 0) scale = filter.columns ? to_columns(mean, fine, x, y, z) : gain(mean, filter.coverage);
                 const V value = hn::Mul(mean, scale);
                 store(filter.eight_bits ? eight_bits(value) : value, row + 4 * x + v * coarse.volume);
             }
@@ -155,21 +158,21 @@ void build_levels(Pyramid& pyramid, const IsotropicFilter& filter, const Write& 
         HWY_DYNAMIC_DISPATCH(reduce_slice)(fine, coarse, z, filter, sums.data());
     };
     const LevelView finest = view(pyramid.levels[0]);
-    const bool more = pyramid.levels.size() > 1;
+    const bool more = pyramid.levels.size() > 1, wide = filter.tent || filter.columns;
     parallel_pieces(static_cast<std::size_t>((finest.nz + 1) / 2), [&](std::size_t piece) {
         const int z = static_cast<int>(piece);
         write(finest, z);
-        if (more && !filter.tent) reduce(finest, view(pyramid.levels[1]), z);
+        if (more && !wide) reduce(finest, view(pyramid.levels[1]), z);
     });
-    // The tent reaches into slices that other pieces write.
-    if (more && filter.tent) over_slices(pyramid.levels[1], [&](int z) { reduce(finest, view(pyramid.levels[1]), z); });
+    // They reach into slices that other pieces write.
+    if (more && wide) over_slices(pyramid.levels[1], [&](int z) { reduce(finest, view(pyramid.levels[1]), z); });
     reduce_coarse(pyramid, reduce);
 }
 
 }  // namespace
 
-Pyramid build_isotropic(Coverage coverage, const IsotropicKnobs& knobs, const LitVoxels& lit) {
-    const IsotropicFilter filter{coverage, knobs.kernel == "tent", knobs.format == "rgba8"};
+Pyramid build_isotropic(Coverage coverage, bool columns, const IsotropicKnobs& knobs, const LitVoxels& lit) {
+    const IsotropicFilter filter{coverage, knobs.kernel == "tent", knobs.format == "rgba8", columns};
     Pyramid pyramid = make_levels(lit.grid->domain, 1, knobs);
     const float scale = radiance_scale(lit);  // refuses what is not finite
     pyramid.scale = filter.eight_bits ? 1.0f : scale;
@@ -181,11 +184,11 @@ Pyramid build_isotropic(Coverage coverage, const IsotropicKnobs& knobs, const Li
     return pyramid;
 }
 
-Pyramid build_harmonics(const LevelKnobs& knobs, const LitVoxels& lit) {
+Pyramid build_harmonics(bool columns, const LevelKnobs& knobs, const LitVoxels& lit) {
     Pyramid pyramid = make_levels(lit.grid->domain, 4, knobs);
     pyramid.scale = radiance_scale(lit);
     const VoxelView voxels = view(lit, pyramid.scale);
-    build_levels(pyramid, {Coverage::surface, false, false, 4}, [&](const LevelView& finest, int z) {
+    build_levels(pyramid, {Coverage::surface, false, false, columns, 4}, [&](const LevelView& finest, int z) {
         HWY_DYNAMIC_DISPATCH(write_slices_harmonics)(finest, slices_of(voxels, pyramid.domain, z), z);
     });
     pyramid.counts.voxels = lit.grid->size();

@@ -57,6 +57,36 @@ HWY_INLINE bool all_air(const LevelView& fine, int x, int y, int z) {
     return any == 0;
 }
 
+/// A texel beyond an odd size is air; beyond an even one the border repeats the outermost, which keeps all of its weight then.
+HWY_INLINE bool is_air(int at, int size) { return at >= size && (at > size || (size & 1) != 0); }
+
+/// How much of a texel's cross-section is blocked along the axis that sees most of it. Its columns reach a finer texel beyond it
+/// on either side: where a slanted wall leaves a texel through its side, the neighbour's part of the wall closes the column. Only
+/// the first volume is read.
+HWY_INLINE float column_opacity(const LevelView& fine, int x, int y, int z) {
+    const D d;
+    const V one = hn::Set(d, 1.0f);
+    const int first[3] = {2 * x, 2 * y, 2 * z}, size[3] = {fine.nx, fine.ny, fine.nz};
+    const std::ptrdiff_t step[3] = {4, static_cast<std::ptrdiff_t>(fine.row), static_cast<std::ptrdiff_t>(fine.slice)};
+    const std::uint16_t* base = fine.texels + at(fine, first[0], first[1], first[2]);
+    V most = hn::Zero(d);
+    for (int axis = 0; axis < 3; ++axis) {
+        const int a = (axis + 1) % 3, b = (axis + 2) % 3;
+        V blocked = hn::Zero(d);
+        for (int column = 0; column < 4; ++column) {
+            const int da = column & 1, db = column >> 1;
+            if (is_air(first[a] + da, size[a]) || is_air(first[b] + db, size[b])) continue;
+            V open = one;
+            for (int k = -1; k <= 2; ++k)
+                if (!is_air(first[axis] + k, size[axis]))
+                    open = hn::NegMulAdd(open, load(base + k * step[axis] + da * step[a] + db * step[b]), open);
+            blocked = hn::Add(blocked, hn::Sub(one, open));
+        }
+        most = hn::Max(most, blocked);
+    }
+    return 0.25f * hn::ExtractLane(most, 3);
+}
+
 /// What an eye sees through one face of eight texels: the four pairs along its axis, front to back, then their mean.
 HWY_INLINE V composite(const V* texel, int face) {
     const D d;

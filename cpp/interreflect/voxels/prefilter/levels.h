@@ -13,7 +13,7 @@ enum class Coverage { volume, surface };
 /// Of one opacity for all directions; of several volumes the first one's opacity scales all.
 struct IsotropicFilter {
     Coverage coverage;
-    bool tent, eight_bits;
+    bool tent, eight_bits, columns;
     int volumes = 1;
 };
 
@@ -71,16 +71,17 @@ void reduce_coarse(Pyramid& pyramid, const Reduce& reduce) {
     }
 }
 
-/// Every level of one face: the finest one cleared and written from the voxels, each other one reduced from the one below it.
-Pyramid build_isotropic(Coverage coverage, const IsotropicKnobs& knobs, const LitVoxels& lit);
+/// `columns`: of OpacityKnob. Every level of one face: the finest one cleared and written from the voxels, each other one reduced
+/// from the one below it.
+Pyramid build_isotropic(Coverage coverage, bool columns, const IsotropicKnobs& knobs, const LitVoxels& lit);
 
 /// Four volumes: the mean radiance and opacity, and what the radiance gains per unit of the direction along x, y and z.
-Pyramid build_harmonics(const LevelKnobs& knobs, const LitVoxels& lit);
+Pyramid build_harmonics(bool columns, const LevelKnobs& knobs, const LitVoxels& lit);
 
 /// Six faces from the second level on.
 Pyramid build_anisotropic(const LevelKnobs& knobs, const LitVoxels& lit);
 
 /// Eight octants of directions at every level.
-Pyramid build_octants(const LevelKnobs& knobs, const LitVoxels& lit);
+Pyramid build_octants(bool columns, const LevelKnobs& knobs, const LitVoxels& lit);
 
 }  // namespace interreflect

@@ -81,7 +81,7 @@ HWY_INLINE VO reduce_octants(const Children& children, std::size_t volume, int f
     return hn::IfThenElse(any, scaled, hn::Or(hn::Mul(whole, hn::LoadDup128(d, last)), hidden_mark()));
 }
 
-void reduce_slice_octants(const LevelView& fine, const LevelView& coarse, int z) {
+void reduce_slice_octants(const LevelView& fine, const LevelView& coarse, int z, bool columns) {
     const D d;
     for (int y = 0; y < coarse.ny; ++y) {
         std::uint16_t* row = coarse.texels + at(coarse, 0, y, z);
@@ -92,7 +92,8 @@ void reduce_slice_octants(const LevelView& fine, const LevelView& coarse, int z)
             const Children c = children(fine, x, y, z);
             V sum = hn::Zero(d);
             for (const auto* texel : c.texel) sum = hn::Add(sum, load(texel));
-            const float opacity = hn::GetLane(alpha_of(hn::Min(hn::Mul(sum, hn::Set(d, 0.25f)), hn::Set(d, 1.0f))));
+            const float opacity = columns ? column_opacity(fine, x, y, z)
+                                          : hn::GetLane(alpha_of(hn::Min(hn::Mul(sum, hn::Set(d, 0.25f)), hn::Set(d, 1.0f))));
             for (int first = 0; first < 8; first += octants_at_once)
                 store_octants(reduce_octants(c, fine.volume, first, opacity),
                               row + 4 * x + static_cast<std::size_t>(first) * coarse.volume, coarse.volume);
@@ -188,18 +189,24 @@ HWY_EXPORT(reduce_slice_octants);
 HWY_EXPORT(write_slices_octants);
 }  // namespace
 
-Pyramid build_octants(const LevelKnobs& knobs, const LitVoxels& lit) {
+Pyramid build_octants(bool columns, const LevelKnobs& knobs, const LitVoxels& lit) {
     Pyramid pyramid = make_levels(lit.grid->domain, 8, knobs);
     pyramid.scale = radiance_scale(lit);
     const VoxelView voxels = view(lit, pyramid.scale);
     const LevelView finest = view(pyramid.levels[0]);
+    const bool more = pyramid.levels.size() > 1;
     parallel_pieces(static_cast<std::size_t>((finest.nz + 1) / 2), [&](std::size_t piece) {
         const int z = static_cast<int>(piece);
         HWY_DYNAMIC_DISPATCH(write_slices_octants)(finest, slices_of(voxels, pyramid.domain, z), z);
-        if (pyramid.levels.size() > 1) HWY_DYNAMIC_DISPATCH(reduce_slice_octants)(finest, view(pyramid.levels[1]), z);
+        if (more && !columns) HWY_DYNAMIC_DISPATCH(reduce_slice_octants)(finest, view(pyramid.levels[1]), z, columns);
     });
+    // Columns reach into slices that other pieces write.
+    if (more && columns)
+        over_slices(pyramid.levels[1], [&](int z) {
+            HWY_DYNAMIC_DISPATCH(reduce_slice_octants)(finest, view(pyramid.levels[1]), z, columns);
+        });
     reduce_coarse(pyramid, [&](const LevelView& fine, const LevelView& coarse, int z) {
-        HWY_DYNAMIC_DISPATCH(reduce_slice_octants)(fine, coarse, z);
+        HWY_DYNAMIC_DISPATCH(reduce_slice_octants)(fine, coarse, z, columns);
     });
     pyramid.counts.voxels = lit.grid->size();
     return pyramid;

@@ -9,11 +9,12 @@ namespace interreflect {
 /// SurfaceCoverage. A surface with normal n that shows F on its front and B on its back looks like (F + B)/2 + 3/4 (B - F) (d .
 /// n) along d: the least squares fit to the step between the two hemispheres, which also keeps the flux out of either side, pi F
 /// and pi B. Seen head on a surface that is lit on one side is a quarter too bright; where the sum is negative it is black.
-struct SphericalHarmonicVoxels : LevelKnobs {
+struct SphericalHarmonicVoxels : LevelKnobs, OpacityKnob {
     bool operator==(const SphericalHarmonicVoxels&) const = default;
-    static constexpr auto description = describe(
-        "SphericalHarmonicVoxels", "Surface coverage, with radiance in two bands of spherical harmonics.",
-        Source{"Freed 2018, 6; Ramamoorthi and Hanrahan 2001", "projection of a step on the sphere"}, LevelKnobs::params);
+    static constexpr auto description =
+        describe("SphericalHarmonicVoxels", "Surface coverage, with radiance in two bands of spherical harmonics.",
+                 Source{"Freed 2018, 6; Ramamoorthi and Hanrahan 2001", "projection of a step on the sphere"}, LevelKnobs::params,
+                 OpacityKnob::params);
 };
 
 Pyramid prefilter(const SphericalHarmonicVoxels& technique, const LitVoxels& lit);
