@@ -1,4 +1,4 @@
-"""5.2.4: How much indirect light flickers when the camera moves: plain, warped, curved and nested grids."""
+"""5.2.4: How much indirect light flickers when the camera moves: plain, warped and curved grids."""
 
 from __future__ import annotations
 
@@ -22,7 +22,6 @@ NAMES = (
     "spline warp",
     "perspective warp",
     "spherical warp",
-    "nested grids",
 )
 
 
@@ -35,7 +34,6 @@ def grids() -> list[ir.Grid]:
         ir.Grid(resolution=128, warp=ir.CubicSpline(alpha=0.25)),
         ir.Grid(resolution=128, warp=ir.Perspective()),
         ir.Grid(resolution=128, warp=ir.Spherical()),
-        ir.Grid(resolution=64, cascades=3),
     ]
 
 

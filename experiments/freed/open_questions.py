@@ -1,4 +1,4 @@
-"""5.4: Freed's open questions: directional voxels, nested and curved grids, light shared between pixels."""
+"""5.4: Freed's open questions: directional voxels, curved grids, light shared between pixels."""
 
 from __future__ import annotations
 
@@ -16,7 +16,6 @@ NAMES = (
     "isotropic, surface coverage",
     "six faces",
     "spherical harmonics",
-    "nested grids, 3 x 64^3",
     "spherical frustum",
     "interleaved 2 x 2",
     "interleaved 4 x 4",
@@ -31,7 +30,6 @@ def ways() -> list[ir.methods.VoxelConeTracing]:
         {"prefilter": ir.SurfaceCoverage()},
         {"prefilter": ir.Anisotropic()},
         {"prefilter": ir.SphericalHarmonicVoxels()},
-        {"grid": ir.Grid(resolution=64, cascades=3)},
         {"grid.warp": ir.Spherical()},
         {"share": ir.Interleaved(width=2, height=2)},
         {"share": ir.Interleaved(width=4, height=4)},

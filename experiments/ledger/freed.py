@@ -201,10 +201,11 @@ def f11(flickering: ir.Records, quality: ir.Records) -> list[Check]:
         )
 
     plain = "isotropic, volume coverage"
-    names = ("scene's bounds", "perspective warp", "spherical warp", "nested grids")
+    names = ("scene's bounds", "perspective warp", "spherical warp")
     return [
-        told("curved frustum voxels and nested grids against flicker", ", ".join(f"{name} {flicker[name]:.3f}" for name in names)),
-        told("nested grids and curved frustum, error and memory", against([plain, "nested grids, 3 x 64^3", "spherical frustum"])),
+        told("curved frustum voxels against flicker", ", ".join(f"{name} {flicker[name]:.3f}" for name in names)),
+        told("curved frustum, error and memory", against([plain, "spherical frustum"])),
+        told("nested grids", "not yet: their voxels cannot be filtered so far"),
         told("anisotropic voxels", against([plain, "isotropic, surface coverage", "six faces"])),
         told("spherical harmonics", against([plain, "spherical harmonics"])),
         told("light shared between pixels", against([plain, "interleaved 2 x 2", "interleaved 4 x 4"])),
@@ -221,6 +222,8 @@ def f12(records: ir.Records) -> list[Check]:
         above("rasterized voxels crack", 100 * rasterized, 100 * VISIBLE_CRACKS, " % of the pixels"),
         above("tessellated ones have holes under OpenGL's limit of 64", 100 * limited, 100 * VISIBLE_CRACKS, " % of the pixels"),
         told("tessellated with large triangles split first", f"{100 * whole:.2f} % of the pixels see through"),
+        # Holes of the floor that show its underside a voxel below are seen in the picture, but are no pixels that see through.
+        told("holes, rasterized / tessellated / under the limit", " / ".join(f"{n:,.0f}" for n in table["stage.compare.holes"])),
     ]
 
 

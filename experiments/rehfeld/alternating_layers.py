@@ -23,11 +23,13 @@ def sheet(height: float, rise: float, half: float) -> ir.Mesh:
 
 def layer() -> ir.Scene:
     """A floor below a layer of voxels, the sun above: opaque between empty. Across the picture the floor rises by two voxels, so that its
-    cones meet the layer at every part of their steps. A floor in the sun would have radiance 1; this one must be dark."""
+    cones meet the layer at every part of their steps. A floor in the sun would have radiance 1; this one must be dark. A speck above keeps
+    empty voxels over the layer: at the end of the domain a wall goes on for ever."""
     voxel = 2.0 / (RESOLUTION - 1)
     camera = ir.Camera(position=(0.0, -2 * voxel, 0.0), target=(0.0, -12 * voxel, 0.0), up=(0.0, 0.0, -1.0), fov_x=60)
     sun = ir.DirectionalLight(direction=(0, -1, 0), irradiance=(2 * np.pi,) * 3)
-    meshes = [sheet(-12 * voxel, 3 * voxel, 0.5), sheet(0.25 * voxel, 0.0, 1.0)]
+    speck = np.array([(0.95, 8 * voxel, 0.95), (0.96, 8 * voxel, 0.95), (0.95, 8 * voxel, 0.96)], np.float32)
+    meshes = [sheet(-12 * voxel, 3 * voxel, 0.5), sheet(0.25 * voxel, 0.0, 1.0), ir.Mesh(speck, np.array([[0, 1, 2]]))]
     return ir.Scene(meshes=meshes, lights=[sun], cameras={"below": camera}, name="one layer")
 
 
