@@ -55,8 +55,6 @@ py::array_t<float> owned_image(Buffer<vec3> pixels, int width, int height) {
 
 void bind_march(py::module_& m) {
     bind_lights_gathered(m);
-    bind_stage(m, "share", "Which part of a pixel's work it does itself, and how the rest is taken from its neighbours.", true,
-               static_cast<const Share*>(nullptr));
     bind_stage(m, "march", "Light that arrives over the hemisphere at the pixels, from the voxels and through openings.", true,
                static_cast<const March*>(nullptr));
     bind_stage(m, "glossy", "Light that the pixels' glossy lobe reflects towards the camera.", true,
@@ -75,16 +73,15 @@ void bind_march(py::module_& m) {
         "Light that arrives over the hemisphere at the pixels.");
     m.def(
         "glossy",
-        [](const Glossy& technique, const Pyramid& pyramid, const GBuffer& gbuffer, const BoundScene& scene, const Share&,
-           std::uint32_t seed) {
+        [](const Glossy& technique, const Pyramid& pyramid, const GBuffer& gbuffer, const BoundScene& scene, std::uint32_t seed) {
             return run([&] {
                 return std::make_shared<GlossyLight>(std::visit(
                     [&](const auto& one) { return glossy(one, pyramid, gbuffer, scene.scene, *scene.intersector, seed); },
                     technique));
             });
         },
-        py::arg("technique"), py::arg("pyramid"), py::arg("gbuffer"), py::arg("scene"), py::arg("share"), py::arg("seed"),
-        "Light that the glossy lobe reflects. A lobe follows its own pixel's view and material: its work is not shared.");
+        py::arg("technique"), py::arg("pyramid"), py::arg("gbuffer"), py::arg("scene"), py::arg("seed"),
+        "Light that the glossy lobe reflects.");
     m.def(
         "shade",
         [](const GBuffer& gbuffer, const GatheredLight& gathered, const GlossyLight* glossy) {

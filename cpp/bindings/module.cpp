@@ -36,6 +36,7 @@ PYBIND11_MODULE(_core, m) {
     m.def(
         "thread_limit", [] { return thread_limit(); }, "How many threads work of the calling thread may use; 0: all.");
     bind_data(m);
+    bind_shading(m);
     bind_visibility(m);
     bind_reference(m);
     bind_voxels(m);

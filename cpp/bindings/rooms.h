@@ -21,6 +21,7 @@ struct BoundScene {
 void bind_data(py::module_& m);
 /// Scenes are bound by bind_visibility, between the ray hierarchy that they hold and the functions that take them.
 void bind_scene(py::module_& m);
+void bind_shading(py::module_& m);
 void bind_visibility(py::module_& m);
 void bind_direct(py::module_& m);
 void bind_reference(py::module_& m);

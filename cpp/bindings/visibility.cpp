@@ -8,6 +8,7 @@
 #include "bindings/arrays.h"
 #include "bindings/rooms.h"
 #include "bindings/run.h"
+#include "shading/shade.h"
 #include "visibility/trace_gbuffer.h"
 
 namespace interreflect::bindings {
@@ -53,12 +54,17 @@ void bind_gbuffer(py::module_& m) {
     cls.def_readonly("counts", &GBuffer::counts).def_property_readonly("bytes", &gbuffer_bytes, "Memory the images hold.");
     m.def(
         "trace_gbuffer",
-        [](const BoundScene& scene, const Camera& camera, int width, int height) {
-            return run(
-                [&] { return std::make_shared<GBuffer>(trace_gbuffer(scene.scene, *scene.intersector, camera, width, height)); });
+        [](const BoundScene& scene, const Camera& camera, int width, int height, const Shade& shade) {
+            return run([&] {
+                auto g = std::make_shared<GBuffer>(trace_gbuffer(scene.scene, *scene.intersector, camera, width, height));
+                g->lobe = lobe_of(shade);
+                return g;
+            });
         },
-        py::arg("scene"), py::arg("camera"), py::arg("width"), py::arg("height"),
-        "The G-buffer by primary rays through pixel centres; textures are filtered by the pixel's footprint.");
+        py::arg("scene"), py::arg("camera"), py::arg("width"), py::arg("height"), py::arg("shade") = Exact{},
+        "The G-buffer by primary rays through pixel centres; textures are filtered by the pixel's footprint. shade: how its "
+        "surfaces "
+        "reflect.");
 }
 
 }  // namespace

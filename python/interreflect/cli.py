@@ -63,6 +63,7 @@ def techniques(stage: Annotated[str | None, typer.Argument(help="one stage only"
 def render(
     scene: Annotated[str, typer.Argument(help="a scene file, or the name of a built-in scene")],
     method: Annotated[str, typer.Option(help="a method's name, as `interreflect methods` lists them")] = "voxel-cone-tracing",
+    preset: Annotated[str | None, typer.Option(help="a paper's configuration of the method, by name; --set changes it")] = None,
     set_: Annotated[list[str] | None, typer.Option("--set", help="a knob: path=value, e.g. grid.resolution=64; repeatable")] = None,
     camera: Annotated[str | None, typer.Option(help="a camera's name; the scene's first if absent")] = None,
     size: Annotated[str, typer.Option(help="width x height in pixels")] = "640x360",
@@ -74,7 +75,8 @@ def render(
     from interreflect.catalogue import find_method, find_scene, parse_knobs, parse_size
 
     world = find_scene(scene)
-    chosen = find_method(method).replace(parse_knobs(set_ or []))
+    plain = find_method(method)
+    chosen = (plain if preset is None else type(plain).preset(preset)).replace(parse_knobs(set_ or []))
     for warning in world.warnings:
         print(f"warning: {warning}", file=sys.stderr)
     frame = chosen.render(world, camera=camera, size=parse_size(size), seed=seed, threads=threads)

@@ -32,11 +32,11 @@ class Frame:
     def image(self) -> Image:
         return self.direct + self.indirect
 
-    def save(self, path: str | Path) -> None:
-        """Writes the image: .exr and .hdr linear, anything else tone-mapped (`tone_map`) 8 bits. OSError where it cannot."""
+    def save(self, path: str | Path, curve: str = "srgb") -> None:
+        """Writes the image: .exr and .hdr linear, anything else tone-mapped (`tone_map` by `curve`) 8 bits. OSError where it cannot."""
         from interreflect.images import write_image
 
-        write_image(path, self.image)
+        write_image(path, self.image, curve=curve)
 
     def _repr_html_(self) -> str:
         from interreflect.images import encode_png

@@ -11,13 +11,30 @@ from numpy.typing import NDArray
 LINEAR = (".exr", ".hdr")
 
 
-def tone_map(image: NDArray[np.float32], exposure: float = 0.0) -> NDArray[np.uint8]:
-    """(h, w, 3) linear radiance to sRGB bytes: times 2^exposure, clipped to [0, 1], sRGB transfer curve. Not-a-number shows magenta."""
-    scaled = np.clip(np.nan_to_num(image, nan=0.0, posinf=1e30) * 2.0**exposure, 0, 1)
-    encoded = np.where(scaled <= 0.0031308, 12.92 * scaled, 1.055 * scaled ** (1 / 2.4) - 0.055)
-    bytes_: NDArray[np.uint8] = np.round(255 * encoded).astype(np.uint8)
+def tone_map(image: NDArray[np.float32], exposure: float = 0.0, curve: str = "srgb") -> NDArray[np.uint8]:
+    """(h, w, 3) linear radiance c, times 2^exposure, to bytes. Not-a-number shows magenta.
+
+    curve: "srgb", clipped to [0, 1] and sRGB transfer curve; or "reinhard", c / (c + 1) and then its power of 1 / 2.2, as in
+    Freed 2018, algorithm 3. ValueError for another.
+    """
+    if curve not in CURVES:
+        raise ValueError(f"tone_map: curve must be one of {', '.join(CURVES)}, got {curve!r}")
+    scaled = np.clip(np.nan_to_num(image, nan=0.0, posinf=1e30) * 2.0**exposure, 0, None)
+    bytes_: NDArray[np.uint8] = np.round(255 * CURVES[curve](scaled)).astype(np.uint8)
     bytes_[np.isnan(image).any(-1)] = (255, 0, 255)
     return bytes_
+
+
+def _srgb(scaled: NDArray[np.float32]) -> NDArray[np.float32]:
+    clipped = np.minimum(scaled, 1)
+    return np.where(clipped <= 0.0031308, 12.92 * clipped, 1.055 * clipped ** (1 / 2.4) - 0.055)
+
+
+def _reinhard(scaled: NDArray[np.float32]) -> NDArray[np.float32]:
+    return (scaled / (scaled + 1)) ** np.float32(1 / 2.2)
+
+
+CURVES = {"srgb": _srgb, "reinhard": _reinhard}
 
 
 def encode_png(image: NDArray[np.float32], exposure: float = 0.0) -> bytes:
@@ -29,13 +46,13 @@ def encode_png(image: NDArray[np.float32], exposure: float = 0.0) -> bytes:
     return out.getvalue()
 
 
-def write_image(path: str | Path, image: NDArray[np.float32], exposure: float = 0.0) -> None:
-    """Writes (h, w, 3) linear radiance; .exr and .hdr as float, other formats tone-mapped. OSError where the file cannot be written."""
+def write_image(path: str | Path, image: NDArray[np.float32], exposure: float = 0.0, curve: str = "srgb") -> None:
+    """Writes (h, w, 3) linear radiance; .exr and .hdr as float, other formats by `tone_map`. OSError where the file cannot be written."""
     import OpenImageIO as oiio
 
     path = Path(path)
     linear = path.suffix.lower() in LINEAR
-    pixels = np.ascontiguousarray(image, np.float32) if linear else tone_map(image, exposure)
+    pixels = np.ascontiguousarray(image, np.float32) if linear else tone_map(image, exposure, curve)
     output = oiio.ImageOutput.create(str(path))
     if output is None:
         raise OSError(f"{path}: no image format has this extension")

@@ -28,11 +28,16 @@ def core_camera(camera: Camera) -> _core.Camera:
     return _core.Camera(camera.position, camera.target, camera.up, camera.fov_x)
 
 
-def trace_gbuffer(scene: Scene, camera: Camera | str | None = None, size: tuple[int, int] | None = None) -> _core.GBuffer:
-    """What the camera sees through pixel centres: position, normal, albedo, ... as (height, width, ...) views, no copies."""
+def trace_gbuffer(
+    scene: Scene, camera: Camera | str | None = None, size: tuple[int, int] | None = None, shade: Any = None
+) -> _core.GBuffer:
+    """What the camera sees through pixel centres: position, normal, albedo, ... as (height, width, ...) views, no copies.
+
+    shade: the technique by which its surfaces reflect in `shadow`, `sky`, `glossy` and `shade`; None: Exact.
+    """
     view = camera_of(scene, camera)
     width, height = view.size if size is None else checked_size(size)
-    return _core.trace_gbuffer(scene.core, core_camera(view), width, height)
+    return _core.trace_gbuffer(scene.core, core_camera(view), width, height, _core.Exact() if shade is None else shade)
 
 
 def shadow(
@@ -104,11 +109,9 @@ def march(
     return _core.march(technique, pyramid, gbuffer, scene.core, _core.EveryPixel() if share is None else share, seed)
 
 
-def glossy(
-    technique: Any, pyramid: _core.Pyramid, gbuffer: _core.GBuffer, scene: Scene, share: Any = None, seed: int = 0
-) -> _core.GlossyLight:
+def glossy(technique: Any, pyramid: _core.Pyramid, gbuffer: _core.GBuffer, scene: Scene, seed: int = 0) -> _core.GlossyLight:
     """Light that the glossy lobe reflects towards the camera: `.radiance` from voxels, `.sky` from the environment."""
-    return _core.glossy(technique, pyramid, gbuffer, scene.core, _core.EveryPixel() if share is None else share, seed)
+    return _core.glossy(technique, pyramid, gbuffer, scene.core, seed)
 
 
 def shade(gbuffer: _core.GBuffer, light: _core.GatheredLight, glossy: _core.GlossyLight | None = None) -> NDArray[np.float32]:

@@ -286,7 +286,8 @@ def test_black_walls_with_an_emitter_have_no_indirect_light(stage, technique):
     [{}, {"march": ir.TracedRays(samples=4)}, {"glossy": ir.TracedRays(samples=4)}, {"glossy": None}, {"share": ir.EveryPixel()},
      {"sky": ir.TracedSky(samples=1)}, {"prefilter": ir.Anisotropic()}, {"voxelize": ir.ExactOverlap()},
      {"light_voxels": ir.ShadowMapInjection(size=64)}, {"light_voxels": ir.ConeLighting(both_sides=True)}, {"light_voxels": ir.Bounces()},
-     {"light_voxels": ir.BlendHistory(slabs=2)}, {"shadow": ir.VoxelCones()}],
+     {"light_voxels": ir.BlendHistory(slabs=2)}, {"shadow": ir.VoxelCones()}, {"shade": ir.BlinnPhong()},
+     {"glossy": ir.GlossyCone(share=ir.Interleaved())}],
     ids=str,
 )  # fmt: skip
 def test_the_method_takes_any_technique_of_each_stage(changes):

@@ -46,11 +46,17 @@ double over_sphere(const F& f, int n = 600) {
 }
 
 const std::vector<SurfacePoint>& surfaces() {
-    static const std::vector<SurfacePoint> all{
-        surface(Lobe::ggx, .25f, 0, 0, .5f),           surface(Lobe::ggx, .1f, 0, .6f, .3f),
-        surface(Lobe::ggx, 1, 0, .04f, .9f),           surface(Lobe::ggx, .5f, 0, 1, 0),
-        surface(Lobe::phong, .2f, 50, .5f, .4f),       surface(Lobe::phong, .2f, 3, 1, 0),
-        surface(Lobe::blinn_phong, .2f, 30, .5f, .4f), surface(Lobe::blinn_phong, .2f, 2, 1, 0)};
+    static const std::vector<SurfacePoint> all{surface(Lobe::ggx, .25f, 0, 0, .5f),
+                                               surface(Lobe::ggx, .1f, 0, .6f, .3f),
+                                               surface(Lobe::ggx, 1, 0, .04f, .9f),
+                                               surface(Lobe::ggx, .5f, 0, 1, 0),
+                                               surface(Lobe::phong, .2f, 50, .5f, .4f),
+                                               surface(Lobe::phong, .2f, 3, 1, 0),
+                                               surface(Lobe::blinn_phong, .2f, 30, .5f, .4f),
+                                               surface(Lobe::blinn_phong, .2f, 2, 1, 0),
+                                               surface(Lobe::freed_cook_torrance, .1f, 0, .6f, .3f),
+                                               surface(Lobe::freed_cook_torrance, 1, 0, .04f, .9f),
+                                               surface(Lobe::gaining_blinn_phong, .2f, 30, .5f, .4f)};
     return all;
 }
 
@@ -109,6 +115,44 @@ TEST(Brdf, PhongLobesReflectEverythingAtNormalView) {
             const Estimate e = albedo(p, p.normal);
             EXPECT_NEAR(e.mean, 1, 5 * e.error + 1e-4) << n;
         }
+}
+
+TEST(Brdf, TheCommonBlinnPhongScaleGainsWhatTheTableSays) {
+    // GROUND_TRUTH.md, to three digits: (n + 8) / (8 pi) reflects more than arrives.
+    for (const auto& [n, gain] : {std::pair{10.0f, 1.075}, std::pair{30.0f, 1.048}}) {
+        const auto p = surface(Lobe::gaining_blinn_phong, .1f, n, 1, 0);
+        const Estimate e = albedo(p, p.normal);
+        EXPECT_NEAR(e.mean, gain, 5 * e.error + 5e-4) << n;
+    }
+}
+
+TEST(Brdf, FreedsCookTorranceReflectsWhatItsClosedFormSays) {
+    // Alpha 1, F = 1, normal view: D = 1 / pi, k = 1/2, so f cos = c / (2 pi (1 + c)) and the albedo is 1 - ln 2, as number 17's.
+    const auto rough = surface(Lobe::freed_cook_torrance, 1, 0, 1, 0);
+    const Estimate e = albedo(rough, rough.normal);
+    EXPECT_NEAR(e.mean, 1 - std::numbers::ln2, 5 * e.error);
+    // Roughness 1/2: k = 9/32, and with h at half the angle the albedo at normal view by quadrature over the angle.
+    const auto p = surface(Lobe::freed_cook_torrance, .25f, 0, 1, 0);
+    double sum = 0;
+    constexpr int n = 100000;
+    for (int i = 0; i < n; ++i) {
+        const double angle = std::numbers::pi / 2 * (i + .5) / n, c = std::cos(angle), h = std::cos(angle / 2), a2 = .0625,
+                     k = 9.0 / 32;
+        const double d = a2 / (std::numbers::pi * std::pow(h * h * (a2 - 1) + 1, 2)), g = c / (c * (1 - k) + k);
+        sum += 2 * std::numbers::pi * std::sin(angle) * c * d * g / (4 * c) * std::numbers::pi / 2 / n;
+    }
+    const Estimate half = albedo(p, p.normal);
+    EXPECT_NEAR(half.mean, sum, 5 * half.error + 1e-5);
+}
+
+TEST(Brdf, FreedsCookTorranceDividesByFourAndTakesTheSquareOfTheRoughnessForItsWidth) {
+    // Straight on, D = 1 / (pi alpha^2), G = 1, F = F0: f = F0 / (4 pi alpha^2). The printed pi gives 1.273 times that (ERRATA).
+    for (const float roughness : {.2f, .5f, 1.0f}) {
+        const float alpha = roughness * roughness;
+        const auto p = surface(Lobe::freed_cook_torrance, alpha, 0, .04f, 0);
+        const float expected = .04f / (4 * pi * alpha * alpha);
+        EXPECT_NEAR(evaluate_brdf(p, p.normal, p.normal).x, expected, 1e-4f * expected) << roughness;
+    }
 }
 
 TEST(Brdf, LightCanGoEitherWay) {

@@ -59,7 +59,7 @@ TEST(ConeSets, OfTheCosineKindIntegrateTheCosineExactly) {
 TEST(ConeSets, OfThePapersGiveWhatTheErrataSay) {
     EXPECT_NEAR(freed_thesis_cones().mean_cosine(), 0.7365f, 1e-4f);  // ERRATA: instead of .6667
     EXPECT_EQ(freed_thesis_cones().cones.size(), 5U);
-    EXPECT_EQ(freed_program_cones().cones.size(), 6U);
+    EXPECT_EQ(six_60_cones().cones.size(), 6U);
 }
 
 TEST(ConeSchedules, AdvanceEvenWithoutAnAperture) {
@@ -68,6 +68,68 @@ TEST(ConeSchedules, AdvanceEvenWithoutAnAperture) {
     ASSERT_GT(schedule.steps.size(), 10U);
     for (std::size_t i = 1; i < schedule.steps.size(); ++i)
         EXPECT_NEAR(schedule.steps[i].distance - schedule.steps[i - 1].distance, 0.375f, 1e-4f);
+}
+
+TEST(ConeSchedules, FromAHeightAreTheListings) {
+    // Freed 2018, listing 4.1, with an aperture of 45 degrees, coneHeight 1.5 and lodOffset .25.
+    const Pyramid pyramid = uniform_pyramid(9, vec4(0));
+    const float half_angle = 22.5f * degrees_to_radians;
+    const ConeShape shape{.half_angle = half_angle,
+                          .first_diameter = 0.25f,
+                          .step = 0.5f,
+                          .level_bias = 0.25f,
+                          .start = ConeShape::Start::height,
+                          .start_height = 1.5f,
+                          .most_steps = 12,
+                          .opacity_correction = false};
+    const ConeSchedule schedule = make_schedule(shape, pyramid);
+    ASSERT_EQ(schedule.steps.size(), 12U);
+    float height = 1.5f;
+    for (const auto& step : schedule.steps) {
+        const float radius = height * std::tan(half_angle);
+        EXPECT_NEAR(step.distance, height, 1e-4f * height);
+        EXPECT_NEAR(static_cast<float>(step.level) + step.blend, std::log2(std::max(1.0f, 2 * radius)) + 0.25f, 1e-4f);
+        EXPECT_EQ(step.exponent, 1.0f);  // color += (1 - alpha) * sample
+        height += radius;
+    }
+}
+
+TEST(ConeSchedules, FromAHeightAdvanceEvenWithoutAnAperture) {
+    const Pyramid pyramid = uniform_pyramid(5, vec4(0));
+    const ConeSchedule schedule = make_schedule(
+        {.half_angle = 0.0f, .first_diameter = 0.75f, .start = ConeShape::Start::height, .start_height = 0.0f}, pyramid);
+    ASSERT_GT(schedule.steps.size(), 10U);
+    for (std::size_t i = 1; i < schedule.steps.size(); ++i)
+        EXPECT_NEAR(schedule.steps[i].distance - schedule.steps[i - 1].distance, 0.375f, 1e-4f);
+}
+
+TEST(ConeSchedules, StartAsRaysUntilTheyAreAVoxelWide) {
+    const Pyramid pyramid = uniform_pyramid(8, vec4(0));
+    const float half_angle = 0.05f, slope = 2.0f * std::tan(half_angle);
+    const ConeSchedule schedule = make_schedule({.half_angle = half_angle, .start = ConeShape::Start::rays}, pyramid);
+    float begin = 0;
+    for (const auto& step : schedule.steps) {
+        const float diameter = std::max(1.0f, slope * begin);
+        // The last step as a ray may begin just before the cone is a voxel wide.
+        EXPECT_NEAR(step.distance, begin + 0.25f * diameter, 1e-3f * (1 + begin));
+        EXPECT_NEAR(static_cast<float>(step.level) + step.blend, std::min(std::log2(diameter), 7.0f), 1e-3f);
+        begin += 0.5f * diameter;
+    }
+    EXPECT_GT(schedule.steps.size(), make_schedule({.half_angle = half_angle, .first_diameter = 0.75f}, pyramid).steps.size());
+}
+
+TEST(ConeSchedules, GrowingStepsReachTwoDiametersAndNoMore) {
+    const Pyramid pyramid = uniform_pyramid(10, vec4(0));
+    const float half_angle = 0.01f;
+    const auto steps = make_schedule({.half_angle = half_angle, .first_diameter = 1.0f, .step_growth = 1.1f}, pyramid).steps;
+    float begin = 0, ratio = 0.5f;
+    for (const auto& step : steps) {
+        const float diameter = 1.0f + 2.0f * std::tan(half_angle) * begin;
+        EXPECT_NEAR(step.distance, begin + 0.5f * ratio * diameter, 1e-3f * (1 + begin));
+        begin += ratio * diameter;
+        ratio = std::min(ratio * 1.1f, 2.0f);
+    }
+    EXPECT_EQ(ratio, 2.0f);
 }
 
 TEST(ConeSchedules, LevelsFollowTheDiameter) {
@@ -152,6 +214,21 @@ TEST(Cones, FogBlocksByItsDepthWhateverTheStep) {
         set_direction(batch, 0, {0, 0, 1}, {1, 0, 0});
         march_cones(pyramid, AirMap(pyramid), make_schedule({0.0f, 1.0f, step, 0.0f, 1.0f}, pyramid), 0.0f, batch);
         EXPECT_NEAR(std::log(batch.open[0]) / std::log(1.0f - a), 33.0f, 1.0f) << step;
+    }
+}
+
+TEST(Cones, WithoutOpacityCorrectionBlendOneTexelAStep) {
+    // The papers': each step blocks the fog's a of a texel, however short it is.
+    const float a = 0.02f;
+    const Pyramid pyramid = uniform_pyramid(7, {0, 0, 0, a});
+    for (const float step : {0.5f, 1.0f}) {
+        ConeBatch batch{};
+        batch.count = 1;
+        set_start(batch, 0, pyramid.domain, {32, 32, 32}, {0, 0, 1}, 0.0f, true);
+        set_direction(batch, 0, {0, 0, 1}, {1, 0, 0});
+        const ConeShape shape{.first_diameter = 1.0f, .step = step, .most_steps = 20, .opacity_correction = false};
+        march_cones(pyramid, AirMap(pyramid), make_schedule(shape, pyramid), 0.0f, batch);
+        EXPECT_NEAR(std::log(batch.open[0]) / std::log(1.0f - a), 20.0f, 0.1f) << step;
     }
 }
 

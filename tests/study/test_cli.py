@@ -38,6 +38,7 @@ def test_help_loads_no_heavy_library():
         (["render", "cornel_box"], "did you mean 'cornell_box'?"),
         (["render", "absent.toml"], "absent.toml"),
         (["render", "cornell_box", "--method", "voxel-cone-tracin"], "did you mean 'voxel-cone-tracing'?"),
+        (["render", "cornell_box", "--preset", "Freed 2014"], "did you mean 'Freed 2018'?"),
         (["study", "absent.py", "--out", "x"], "absent.py: no such study file"),
         (["report", "absent"], "absent: no study"),
     ],

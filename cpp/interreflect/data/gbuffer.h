@@ -2,10 +2,12 @@
 #pragma once
 #include <cstdint>
 #include <limits>
+#include <optional>
 
 #include "data/buffer.h"
 #include "data/camera.h"
 #include "data/counts.h"
+#include "data/scene.h"
 #include "math/vectors.h"
 
 namespace interreflect {
@@ -28,6 +30,7 @@ struct GBuffer {
     Buffer<std::uint32_t> triangle;  // global number; no_hit
     Buffer<std::uint32_t> instance;  // no_hit where nothing was hit
     Buffer<std::uint32_t> body;      // 0 is "world"
+    std::optional<Lobe> lobe;        // of every glossy surface; empty: each has its material's (stage shade)
     Counts counts;
 
     std::size_t pixels() const { return static_cast<std::size_t>(width) * height; }

@@ -10,8 +10,13 @@
 
 namespace interreflect {
 
-/// The glossy lobe's shape; SCENE_FORMAT.md has the formulas.
-enum class Lobe : std::uint8_t { ggx, phong, blinn_phong };
+/// The glossy lobe's shape. Materials have one of the first three, SCENE_FORMAT.md has the formulas; the others are techniques of
+/// the stage `shade`.
+enum class Lobe : std::uint8_t { ggx, phong, blinn_phong, freed_cook_torrance, gaining_blinn_phong };
+inline constexpr int lobe_count = 5;
+/// Lobes of microfacets of width alpha, whose reflectance rises with Schlick's term; the others have an exponent and no Fresnel
+/// term.
+constexpr bool has_microfacets(Lobe lobe) { return lobe == Lobe::ggx || lobe == Lobe::freed_cook_torrance; }
 
 struct Material {
     vec3 albedo{0.5f};

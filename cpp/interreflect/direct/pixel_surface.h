@@ -2,6 +2,7 @@
 #pragma once
 #include "data/gbuffer.h"
 #include "data/scene.h"
+#include "shading/pixel_lobe.h"
 #include "visibility/surface.h"
 
 namespace interreflect {
@@ -19,8 +20,9 @@ struct PixelSurface {
         point.alpha = g.alpha[pixel];
         point.offset = g.offset[pixel];
         point.material = scene.material_of(g.triangle[pixel]);
-        point.exponent = scene.materials[point.material].exponent;
-        point.lobe = scene.materials[point.material].lobe;
+        const PixelLobe lobe = lobe_at(g, scene.materials[point.material], pixel);
+        point.exponent = lobe.exponent;
+        point.lobe = lobe.lobe;
         to_viewer = glm::normalize(g.camera.position - point.position);
     }
     bool reflects() const { return max_component(point.albedo) > 0.0f || glossy(); }

@@ -40,6 +40,16 @@ float phong_cosine(const SurfacePoint& p, const vec3& wo, const vec3& wi) {
 /// Scale of the Blinn-Phong lobe for which it reflects everything at normal view.
 float blinn_phong_scale(float n) { return (n + 2.0f) * (n + 4.0f) / (8.0f * pi * (std::exp2(-0.5f * n) + n)); }
 
+/// Schlick's approximation of Smith's shadowing over the cosine [Freed 2018, 4.5.1]. The paper writes one alpha for the k here
+/// and for D; k takes the roughness, D its square (ERRATA).
+float schlick_shadowing_over_cosine(float k, float cosine) { return 1.0f / (cosine * (1.0f - k) + k); }
+/// D F G / (4 cos cos): with D normalised the paper's pi in the place of 4 would be 1.273 times too bright (ERRATA).
+vec3 freed_cook_torrance(const SurfacePoint& p, const Angles& a) {
+    const float k = squared(std::sqrt(p.alpha) + 1.0f) / 8.0f;
+    const float shadowing = schlick_shadowing_over_cosine(k, a.cos_o) * schlick_shadowing_over_cosine(k, a.cos_i);
+    return schlick(p.specular, a.cos_o_half) * (ggx_distribution(p.alpha, a) * shadowing * 0.25f);
+}
+
 vec3 lobe_value(const SurfacePoint& p, const vec3& wo, const vec3& wi, const Angles& a) {
     const float n = p.exponent;
     switch (p.lobe) {
@@ -47,6 +57,10 @@ vec3 lobe_value(const SurfacePoint& p, const vec3& wo, const vec3& wi, const Ang
             return p.specular * ((n + 2.0f) / (2.0f * pi) * std::pow(phong_cosine(p, wo, wi), n));
         case Lobe::blinn_phong:
             return p.specular * (blinn_phong_scale(n) * std::pow(a.cos_half, n));
+        case Lobe::gaining_blinn_phong:
+            return p.specular * ((n + 8.0f) / (8.0f * pi) * std::pow(a.cos_half, n));
+        case Lobe::freed_cook_torrance:
+            return freed_cook_torrance(p, a);
         case Lobe::ggx:
             break;
     }
@@ -62,8 +76,10 @@ float lobe_pdf(const SurfacePoint& p, const vec3& wo, const vec3& wi, const Angl
             return (n + 1.0f) / (2.0f * pi) * std::pow(phong_cosine(p, wo, wi), n) *
                    (glm::dot(p.normal, wo) > 0.0f ? 1.0f : 0.0f);
         case Lobe::blinn_phong:
+        case Lobe::gaining_blinn_phong:
             return (n + 1.0f) / (2.0f * pi) * std::pow(a.cos_half, n) / glm::max(4.0f * std::fabs(a.cos_o_half), 1e-12f);
         case Lobe::ggx:
+        case Lobe::freed_cook_torrance:
             break;
     }
     if (a.cos_o_half <= 0.0f) return 0.0f;
@@ -93,8 +109,8 @@ vec3 sample_lobe(const SurfacePoint& p, const vec3& wo, const vec2& u) {
         return Frame(glm::normalize(mirror)).to_world(sample_cosine_power(p.exponent, u));
     }
     const Frame frame(n);
-    const vec3 half = frame.to_world(p.lobe == Lobe::ggx ? sample_visible_normal(frame.to_local(wo), p.alpha, u)
-                                                         : sample_cosine_power(p.exponent, u));
+    const vec3 half = frame.to_world(has_microfacets(p.lobe) ? sample_visible_normal(frame.to_local(wo), p.alpha, u)
+                                                             : sample_cosine_power(p.exponent, u));
     return 2.0f * glm::dot(wo, half) * half - wo;
 }
 
@@ -102,7 +118,7 @@ vec3 sample_lobe(const SurfacePoint& p, const vec3& wo, const vec2& u) {
 float glossy_share(const SurfacePoint& p, float cos_o) {
     const float diffuse = luminance(p.albedo);
     if (max_component(p.specular) <= 0.0f) return diffuse > 0.0f ? 0.0f : -1.0f;
-    const float glossy = luminance(p.lobe == Lobe::ggx ? schlick(p.specular, cos_o) : p.specular);
+    const float glossy = luminance(has_microfacets(p.lobe) ? schlick(p.specular, cos_o) : p.specular);
     return glossy / (glossy + diffuse);
 }
 

@@ -1,4 +1,4 @@
-/// The reflection of SCENE_FORMAT.md: f = albedo / pi + one glossy lobe.
+/// The reflection of SCENE_FORMAT.md, f = albedo / pi + one glossy lobe, and the lobes that stage shade puts in its place.
 ///
 /// `wo` and `wi` are unit vectors that leave the surface, in world space: towards the viewer and towards the light.
 #pragma once

@@ -2,8 +2,8 @@
 ///
 ///   GlossyLight glossy(const Technique&, const Pyramid&, const GBuffer&, const Scene&, const Intersector&, seed);
 ///
-/// Only pixels with a specular reflectance are visited. A lobe follows its own pixel's view and material, so this work is never
-/// shared between pixels. Exact counterpart: TracedRays.
+/// Only pixels with a specular reflectance are visited. The G-buffer says which lobe they have (stage shade). Exact counterpart:
+/// TracedRays.
 #pragma once
 #include <variant>
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 import difflib
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from interreflect import _core
@@ -90,6 +90,13 @@ def unknown(owner: str, name: str, known: list[str]) -> TypeError:
     near = difflib.get_close_matches(name, known, n=1, cutoff=0.5)
     hint = f"; did you mean {near[0]!r}?" if near else f"; it has {', '.join(known) or 'none'}"
     return TypeError(f"{owner} has no knob {name!r}{hint}")
+
+
+def no_preset(owner: str, name: str, known: Sequence[str]) -> ValueError:
+    """The ValueError for a preset that is not there, with the nearest one that is."""
+    near = difflib.get_close_matches(name, known, n=1, cutoff=0.5)
+    hint = f"; did you mean {near[0]!r}?" if near else f"; it has {', '.join(map(repr, known)) or 'none'}"
+    return ValueError(f"{owner} has no preset {name!r}{hint}")
 
 
 def replace_in(technique: Any, path: str, value: Any, owner: str, whole: str) -> Any:

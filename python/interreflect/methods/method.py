@@ -13,7 +13,7 @@ from typing import Any, ClassVar, TypeVar, dataclass_transform
 
 from interreflect import _core
 from interreflect.frame import Frame, Image
-from interreflect.methods.knobs import check_knob, flatten, is_technique, knob, replace_in, stage, unknown
+from interreflect.methods.knobs import check_knob, flatten, is_technique, knob, no_preset, replace_in, stage, unknown
 from interreflect.methods.prepared import Prepared, View
 from interreflect.profile import Profile
 from interreflect.scenes.camera import Camera
@@ -39,6 +39,7 @@ def method(cls: type[Self]) -> type[Self]:
         plain(self, **given)
 
     made.__init__ = __init__  # type: ignore[method-assign, assignment]
+    made.presets = tuple(made.preset_values)
     return made
 
 
@@ -46,6 +47,16 @@ class Method(ABC):
     """A composition of stages. Subclasses are made by `@method`, fields are knobs; `bounces` is the transport they aim at."""
 
     own_stages: ClassVar[tuple[str, ...]] = ()  # stages of the profile that no technique makes, but that `exactly` makes exact
+
+    preset_values: ClassVar[Mapping[str, Mapping[str, Any]]] = {}  # name -> the knobs, by field, that differ from the defaults
+    presets: ClassVar[tuple[str, ...]] = ()  # their names
+
+    @classmethod
+    def preset(cls: type[Self], name: str) -> Self:
+        """A paper's configuration by its name, one of `presets`: a value like any other. ValueError for another, with the nearest."""
+        if name not in cls.preset_values:
+            raise no_preset(cls.__name__, name, cls.presets)
+        return cls(**cls.preset_values[name])
 
     @property
     def bounces(self) -> int | None:

@@ -9,6 +9,7 @@ from interreflect.frame import Image
 from interreflect.methods.knobs import stage
 from interreflect.methods.method import Method, method
 from interreflect.methods.prepared import View
+from interreflect.methods.voxel_presets import PRESETS
 from interreflect.profile import Profile
 from interreflect.stages import (
     glossy,
@@ -41,8 +42,11 @@ class VoxelConeTracing(Method):
     march: Any = stage(default=_core.DiffuseCones())
     glossy: Any = stage(default=_core.GlossyCone(), optional=True)
     share: Any = stage(default=_core.Interleaved(width=4, height=4))
+    shade: Any = stage(default=_core.Exact())
     shadow: Any = stage(default=_core.TracedShadows())
     sky: Any = stage(default=_core.ConeSky())
+
+    preset_values = PRESETS
 
     @property
     def bounces(self) -> int | None:
@@ -52,7 +56,7 @@ class VoxelConeTracing(Method):
     def compose(self, view: View, profile: Profile) -> tuple[Image, Image, Any]:
         scene, seed = view.scene, view.seed
         with profile.stage("gbuffer") as note:
-            gbuffer = note(trace_gbuffer(scene, view.camera, view.size))
+            gbuffer = note(trace_gbuffer(scene, view.camera, view.size, self.shade))
         with profile.stage("voxelize") as note:
             voxels = note(voxelize(self.voxelize, scene, place(self.grid, scene, view.camera, view.size)))
         with profile.stage("light_voxels") as note:
@@ -64,7 +68,7 @@ class VoxelConeTracing(Method):
         reflected = None
         if self.glossy is not None:
             with profile.stage("glossy") as note:
-                reflected = note(glossy(self.glossy, pyramid, gbuffer, scene, share=self.share, seed=seed))
+                reflected = note(glossy(self.glossy, pyramid, gbuffer, scene, seed=seed))
         with profile.stage("shadow") as note:
             lights = note(shadow(self.shadow, scene, gbuffer, seed, pyramids=[pyramid]))
         with profile.stage("sky") as note:

@@ -15,6 +15,7 @@ struct VoxelCones : MarchKnobs {
     double half_angle = 1.0;
     int samples = 4;
 
+    VoxelCones() : MarchKnobs{} {}  // g++ 12 takes the implicit one's strings for uninitialized
     bool operator==(const VoxelCones&) const = default;
     static constexpr auto description = describe(
         "VoxelCones", "A cone through the voxels to every point, spot and directional light; emitters by traced samples.",

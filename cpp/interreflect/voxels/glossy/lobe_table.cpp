@@ -34,7 +34,7 @@ LobeCone integrate(Lobe lobe, float alpha, float cosine) {
         const vec2 u(unit_float(bits.x), unit_float(bits.y));
         const BrdfSample sample = sample_brdf(full, wo, 0.0f, u);
         cone.scale += sample.weight.x / samples;
-        if (lobe == Lobe::ggx) cone.bias += sample_brdf(edge, wo, 0.0f, u).weight.x / samples;
+        if (has_microfacets(lobe)) cone.bias += sample_brdf(edge, wo, 0.0f, u).weight.x / samples;
         mean += sample.wi * (sample.weight.x / samples);
     }
     const float length = std::hypot(mean.x, mean.z);
@@ -72,17 +72,28 @@ LobeCone LobeTable::at(float alpha, float cosine) const {
     return sum;
 }
 
+namespace {
+template <Lobe lobe>
+const LobeTable& table_of() {
+    static const LobeTable table(lobe);
+    return table;
+}
+}  // namespace
+
 const LobeTable& lobe_table(Lobe lobe) {
-    if (lobe == Lobe::phong) {
-        static const LobeTable phong(Lobe::phong);
-        return phong;
+    switch (lobe) {
+        case Lobe::phong:
+            return table_of<Lobe::phong>();
+        case Lobe::blinn_phong:
+            return table_of<Lobe::blinn_phong>();
+        case Lobe::freed_cook_torrance:
+            return table_of<Lobe::freed_cook_torrance>();
+        case Lobe::gaining_blinn_phong:
+            return table_of<Lobe::gaining_blinn_phong>();
+        case Lobe::ggx:
+            break;
     }
-    if (lobe == Lobe::blinn_phong) {
-        static const LobeTable blinn_phong(Lobe::blinn_phong);
-        return blinn_phong;
-    }
-    static const LobeTable ggx(Lobe::ggx);
-    return ggx;
+    return table_of<Lobe::ggx>();
 }
 
 }  // namespace interreflect

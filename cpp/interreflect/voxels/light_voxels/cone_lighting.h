@@ -14,6 +14,7 @@ struct ConeLighting : MarchKnobs {
     int sky_cones = 9;
     bool both_sides = false;
 
+    ConeLighting() : MarchKnobs{} {}  // g++ 12 takes the implicit one's strings for uninitialized
     bool operator==(const ConeLighting&) const = default;
     static constexpr auto description = describe(
         "ConeLighting",

@@ -89,7 +89,7 @@ ConeSet freed_thesis_cones() {
     return set;
 }
 
-ConeSet freed_program_cones() {
+ConeSet six_60_cones() {
     ConeSet set;
     set.half_angle = 30.0f * degrees_to_radians;
     set.cones.push_back({{0, 0, 1}, 0.25f});

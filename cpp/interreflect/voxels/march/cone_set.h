@@ -24,8 +24,8 @@ struct ConeSet {
 /// They give .7365 for radiance ~ cos, where 2/3 is right (ERRATA).
 ConeSet freed_thesis_cones();
 /// Six cones of 60 degrees full aperture, one along the normal with weight 1/4, five tilted by 60 degrees [program of Freed
-/// 2018].
-ConeSet freed_program_cones();
+/// 2018; Crassin et al. 2011].
+ConeSet six_60_cones();
 /// `count` cones of equal weight: rings of equal projected solid angle, each cone at the mean cosine of its part times a common
 /// factor, so that the set integrates radiance ~ cos exactly. half_angle: radians; 0: cones of the hemisphere's solid angle /
 /// count.

@@ -19,7 +19,7 @@ static_assert(most_receivers * most_receivers <= ConeBatch::capacity);
 ConeSet choose_set(const DiffuseCones& technique) {
     const auto half_angle = static_cast<float>(technique.half_angle) * degrees_to_radians;
     if (technique.set == "cosine") return cosine_cones(technique.cones, half_angle);
-    ConeSet set = technique.set == "freed_thesis" ? freed_thesis_cones() : freed_program_cones();
+    ConeSet set = technique.set == "freed_thesis" ? freed_thesis_cones() : six_60_cones();
     if (half_angle > 0.0f) set.half_angle = half_angle;
     return set;
 }
@@ -34,7 +34,7 @@ struct Work {
     ConeEnvironment environment;
     Block block;
     float normal_offset, cut_off;
-    bool own_surface;
+    bool own_surface, multiply_by_occlusion;
 };
 
 void find_receivers(const Work& work, const Tile& tile, int phase, Receivers& found, ConeBatch& batch) {
@@ -75,6 +75,7 @@ Counts march_phase(const Work& work, int phase, Receivers& receivers, ConeBatch&
         turn_cones(receivers, work.set.cones[c].direction, batch);
         const ConeCounts done = march_cones(work.pyramid, work.air, work.schedule, work.cut_off, batch);
         counts.cones += batch.count, counts.cone_steps += done.steps, counts.voxel_fetches += done.fetches;
+        if (work.multiply_by_occlusion) multiply_by_openness(batch);
         add_results(work, batch, work.set.cones[c].weight, receivers);
     }
     const auto& sum = receivers.sum;
@@ -99,7 +100,8 @@ GatheredLight march(const DiffuseCones& technique, const Pyramid& pyramid, const
                     block_of(share),
                     static_cast<float>(technique.normal_offset),
                     static_cast<float>(technique.cut_off),
-                    technique.own_surface};
+                    technique.own_surface,
+                    technique.multiply_by_occlusion};
     std::vector<float> weights(work.block.phases(), 0.0f);
     for (std::size_t c = 0; c < set.cones.size(); ++c) weights[c % weights.size()] += set.cones[c].weight;
 

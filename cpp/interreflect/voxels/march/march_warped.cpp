@@ -156,7 +156,8 @@ ConeCounts march_vector(const Map& map, const LevelTable& table, const ConeSched
         own = hn::MulAdd(hn::Sub(own_opacity(d, next_texels, h, width, axis_plane, along, axis_cells, aligned), own), blend, own);
         own = hn::IfThenElseZero(has_plane, own);
         const V others = hn::Div(hn::Max(hn::Sub(ta, own), zero), hn::Max(hn::Sub(one, own), hn::Set(d, 1e-3f)));
-        const V depth = hn::Div(hn::Mul(hn::Mul(hn::Set(d, step.density), scale), at.stretch), size);
+        const V density = hn::Set(d, step.density);
+        const V depth = schedule.opacity_correction ? hn::Div(hn::Mul(hn::Mul(density, scale), at.stretch), size) : density;
         const V clear = power(d, hn::Sub(one, hn::Min(others, one)), depth);
         const V opacity = hn::IfThenElseZero(seeing, hn::Sub(one, clear));
         const V blocked = newly_blocked(d, open, opacity, step.correlation);

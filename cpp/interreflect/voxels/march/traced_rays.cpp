@@ -8,6 +8,7 @@
 #include "math/parallel.h"
 #include "math/sampling.h"
 #include "shading/brdf.h"
+#include "shading/pixel_lobe.h"
 #include "voxels/march/gather.h"
 #include "voxels/march/voxel_lookup.h"
 
@@ -118,8 +119,9 @@ SurfacePoint glossy_point(const GBuffer& g, const Scene& scene, std::size_t pixe
     point.albedo = vec3(0);
     point.specular = g.specular[pixel];
     point.alpha = g.alpha[pixel];
-    point.exponent = material.exponent;
-    point.lobe = material.lobe;
+    const PixelLobe lobe = lobe_at(g, material, pixel);
+    point.exponent = lobe.exponent;
+    point.lobe = lobe.lobe;
     return point;
 }
 
