@@ -126,7 +126,7 @@ ConeCounts march_vector(const Map& map, const LevelTable& table, const ConeSched
         const V lod = hn::Min(hn::Max(wanted, at.least_level), hn::Set(d, static_cast<float>(table.last)));
         const V whole = hn::Floor(lod), blend = hn::Sub(lod, whole);
         const V size = exp2_of(d, lod);  // of a texel, voxels
-        const V reach = hn::Div(size, at.density);
+        const V reach = hn::Div(size, hn::Max(at.stretch, hn::Set(d, 1e-20f)));
         active = hn::And(active, hn::And(hn::Lt(hn::Sub(distance, reach), exit), hn::Lt(hn::Add(distance, reach), limit)));
         if (hn::AllFalse(d, active)) break;
         counts.steps += static_cast<std::uint64_t>(hn::CountTrue(d, active));

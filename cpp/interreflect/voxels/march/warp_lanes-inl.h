@@ -42,7 +42,7 @@ struct LanesAt {
     Lanes3<V> voxels;  // place; of nested grids, in linear voxels of the finest one
     Lanes3<V> toward;  // unit direction there
     V stretch;         // voxels along a linear voxel of the way
-    V density;         // voxels along a linear voxel, the mean over all directions
+    V density;         // voxels along a linear voxel across the way
     V least_level;     // finest level there is
     hn::Mask<D> inside;
 };
@@ -56,9 +56,10 @@ template <class D, class V = hn::Vec<D>>
 HWY_INLINE V within(D d, V p, float size) {
     return hn::Min(hn::Max(p, hn::Zero(d)), hn::Set(d, size));
 }
+/// Voxels along a linear voxel across the way, the mean of both directions: of `volume` voxels in a linear one.
 template <class D, class V = hn::Vec<D>>
-HWY_INLINE V cube_root(D d, V x) {
-    return exp2_of(d, hn::Mul(log2_of(d, x), hn::Set(d, 1.0f / 3.0f)));
+HWY_INLINE V density_across(D d, V volume, V stretch) {
+    return hn::Sqrt(hn::Div(volume, hn::Max(stretch, hn::Set(d, 1e-20f))));
 }
 /// Fills `toward` and `stretch` from voxels along each axis for a linear voxel of the way.
 template <class D, class V = hn::Vec<D>>
@@ -116,7 +117,7 @@ class SeparableLanes {
         V sx, sy, sz;
         at.voxels = {curve(d, 0, p.x, sx), curve(d, 1, p.y, sy), curve(d, 2, p.z, sz)};
         set_way(d, Lanes3<V>{hn::Mul(direction.x, sx), hn::Mul(direction.y, sy), hn::Mul(direction.z, sz)}, at);
-        at.density = cube_root(d, hn::Mul(hn::Mul(sx, sy), sz));
+        at.density = density_across(d, hn::Mul(hn::Mul(sx, sy), sz), at.stretch);
         at.least_level = hn::Zero(d);
         at.inside = hn::Eq(distance, distance);
         return at;
@@ -155,7 +156,7 @@ class ViewLanes {
     }
     template <class D, class V = hn::Vec<D>>
     HWY_INLINE void finish(D d, V volume, LanesAt<D>& at) const {
-        at.density = cube_root(d, hn::Max(volume, hn::Set(d, 1e-30f)));
+        at.density = hn::Max(density_across(d, volume, at.stretch), hn::Set(d, 1e-20f));
         at.least_level = hn::Zero(d);
         const auto between = [&](V q, float size)
                                  HWY_ATTR { return hn::And(hn::Ge(q, hn::Zero(d)), hn::Le(q, hn::Set(d, size))); };
