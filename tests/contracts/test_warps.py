@@ -1,5 +1,7 @@
 """Contracts of warps, view volumes, nested grids and regions: their maps, and every voxelization in them."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -122,7 +124,7 @@ def test_spherical_voxels_stay_where_they_are_while_the_camera_turns():
     """Snapped angles: voxels' faces seen from two cameras that share a place agree wherever both have voxels."""
     scene, grid = soup_scene(), ir.Grid(resolution=32, warp=ir.Spherical())
     first = grid.place(scene, CAMERA, size=(320, 180))
-    turned = grid.place(scene, CAMERA.replace(target=(0.1, 0.2, 0.1)), size=(320, 180))
+    turned = grid.place(scene, replace(CAMERA, target=(0.1, 0.2, 0.1)), size=(320, 180))
     voxels, world = points_in(first)
     seen = turned.to_voxels(world)
     shift = seen - voxels
@@ -134,7 +136,7 @@ def test_a_region_about_the_camera_moves_in_steps():
     scene, grid = soup_scene(), ir.Grid(resolution=32, region=ir.AroundCamera(width=1.0, step=4))
     size = grid.place(scene, CAMERA).voxel_size
     lowers = [
-        np.array(grid.place(scene, CAMERA.replace(position=(0.4 + move, -0.3, 2.6))).lower) / (4 * size) for move in np.linspace(0, 1, 9)
+        np.array(grid.place(scene, replace(CAMERA, position=(0.4 + move, -0.3, 2.6))).lower) / (4 * size) for move in np.linspace(0, 1, 9)
     ]
     steps = np.diff(lowers, axis=0)
     assert np.abs(steps - np.round(steps)).max() < 1e-3 and np.abs(steps).max() > 0.5

@@ -73,7 +73,7 @@ Counts march_width(const Work& work, std::span<const Reflection> cones, ConeBatc
     for (int i = 0; i < batch.count; ++i) {
         const vec3 normal = work.gbuffer.geometric_normal[cones[i].pixel];
         set_start(batch, i, work.pyramid.domain, cones[i].surface, normal, offset, work.technique.own_surface);
-        set_direction(batch, i, normal, cones[i].direction);
+        set_direction(batch, i, cones[i].direction);
     }
     const ConeCounts done = march_cones(work.pyramid, work.air, work.schedules[cones.front().width], cut_off, batch);
     if (work.technique.multiply_by_occlusion) multiply_by_openness(batch);

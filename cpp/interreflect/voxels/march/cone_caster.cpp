@@ -27,7 +27,7 @@ Counts ConeCaster::cast(std::span<const Cone> cones, ConeBatch& batch) const {
             if (distance > 0.0f) direction = to_light / distance;
             batch.limit[i] = distance - 1.0f;
         }
-        set_direction(batch, i, cone.normal, direction);
+        set_direction(batch, i, direction);
     }
     const ConeCounts done = march_cones(pyramid_, air_, schedule_, static_cast<float>(knobs_.cut_off), batch);
     Counts counts;

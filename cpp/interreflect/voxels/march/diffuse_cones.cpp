@@ -50,8 +50,8 @@ void find_receivers(const Work& work, const Tile& tile, int phase, Receivers& fo
 }
 
 void turn_cones(const Receivers& from, const vec3& cone, ConeBatch& batch) {
-    float* const rows[Receivers::rows] = {batch.dx, batch.dy, batch.dz, batch.slope, batch.axis_direction};
-    for (int row = 0; row < Receivers::rows; ++row)
+    float* const rows[3] = {batch.dx, batch.dy, batch.dz};
+    for (int row = 0; row < 3; ++row)
         for (int i = 0; i < from.count; ++i)
             rows[row][i] =
                 from.per_axis[row][0][i] * cone.x + from.per_axis[row][1][i] * cone.y + from.per_axis[row][2][i] * cone.z;

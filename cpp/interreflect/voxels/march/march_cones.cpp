@@ -35,10 +35,10 @@ ConeCounts march_batch(const Pyramid& pyramid, const AirMap& air, const ConeSche
         const V dx = hn::Load(d, batch.dx + first), dy = hn::Load(d, batch.dy + first), dz = hn::Load(d, batch.dz + first);
         const V exit = hn::Min(hn::Min(exit_distance(d, px, dx, sx), exit_distance(d, py, dy, sy)), exit_distance(d, pz, dz, sz));
         auto active = hn::FirstN(d, static_cast<std::size_t>(batch.count - first < lanes ? batch.count - first : lanes));
-        const V height = hn::Load(d, batch.height + first), slope = hn::Load(d, batch.slope + first);
-        const V width = hn::Load(d, batch.width + first), aligned = hn::Load(d, batch.aligned + first);
-        const V axis_plane = hn::Load(d, batch.axis_plane + first), axis_start = hn::Load(d, batch.axis_start + first);
-        const V axis_direction = hn::Load(d, batch.axis_direction + first), axis_cells = hn::Load(d, batch.axis_cells + first);
+        const V nx = hn::Load(d, batch.nx + first), ny = hn::Load(d, batch.ny + first), nz = hn::Load(d, batch.nz + first);
+        const V height = hn::Load(d, batch.height + first), width = hn::Load(d, batch.width + first);
+        const V axis = hn::Load(d, batch.axis + first), axis_plane = hn::Load(d, batch.axis_plane + first);
+        const V axis_cells = hn::Load(d, batch.axis_cells + first), aligned = hn::Load(d, batch.aligned + first);
         const auto has_plane = hn::Gt(width, zero);
         V r = zero, g = zero, b = zero, open = one;
         alignas(64) float colour[4 * max_lanes] = {};
@@ -75,7 +75,7 @@ ConeCounts march_batch(const Pyramid& pyramid, const AirMap& air, const ConeSche
             V tr, tg, tb, ta;
             hn::LoadInterleaved4(d, colour, tr, tg, tb, ta);
             ta = hn::IfThenElseZero(seeing, hn::Min(hn::Max(ta, zero), one));
-            const V h = hn::MulAdd(slope, distance, height), along = hn::MulAdd(axis_direction, distance, axis_start);
+            const V h = hn::MulAdd(x, nx, hn::MulAdd(y, ny, hn::MulAdd(z, nz, height))), along = of_axis(d, axis, x, y, z);
             V own = own_opacity(d, hn::Set(d, l0.inverse_size), h, width, axis_plane, along, axis_cells, aligned);
             if (two) {
                 const V next = own_opacity(d, hn::Set(d, l1.inverse_size), h, width, axis_plane, along, axis_cells, aligned);

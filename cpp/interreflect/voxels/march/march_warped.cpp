@@ -151,7 +151,7 @@ ConeCounts march_vector(const Map& map, const LevelTable& table, const ConeSched
         V tr, tg, tb, ta;
         hn::LoadInterleaved4(d, sight.colour, tr, tg, tb, ta);
         ta = hn::IfThenElseZero(seeing, hn::Min(hn::Max(ta, zero), one));
-        const V h = hn::Add(dot(at.voxels, normal), height), along = at.voxels.of(d, axis);
+        const V h = hn::Add(dot(at.voxels, normal), height), along = of_axis(d, axis, at.voxels.x, at.voxels.y, at.voxels.z);
         V own = own_opacity(d, texels, h, width, axis_plane, along, axis_cells, aligned);
         own = hn::MulAdd(hn::Sub(own_opacity(d, next_texels, h, width, axis_plane, along, axis_cells, aligned), own), blend, own);
         own = hn::IfThenElseZero(has_plane, own);
@@ -228,18 +228,12 @@ void set_warped_start(ConeBatch& batch, int i, const Domain& domain, const vec3&
     const mat3 density = nested ? mat3(std::exp2(-domain.grid_level(surface))) : domain.density(surface);
     const vec3 start = surface + normal * (offset / glm::length(density * normal));
     const vec3 on_surface = nested ? surface : domain.place(surface).voxels;
-    const vec3 facing = glm::normalize(glm::transpose(glm::inverse(density)) * normal), size = glm::abs(facing);
-    const int axis = longest_axis(facing);
+    const vec3 facing = glm::normalize(glm::transpose(glm::inverse(density)) * normal);
     batch.x[i] = start.x, batch.y[i] = start.y, batch.z[i] = start.z;
-    batch.nx[i] = facing.x, batch.ny[i] = facing.y, batch.nz[i] = facing.z;
     batch.scale[i] = 1.0f / std::cbrt(std::fabs(glm::determinant(density)));
-    batch.height[i] = -glm::dot(facing, on_surface);
-    batch.width[i] = see_own_surface ? 0.0f : size.x + size.y + size.z;
-    batch.axis[i] = static_cast<float>(axis);
-    batch.axis_plane[i] = on_surface[axis];
-    batch.axis_cells[i] = static_cast<float>(domain.cells[axis] << (domain.cascades - 1));
+    set_plane(batch, i, domain, on_surface, facing, see_own_surface);
     // View volumes bend planes: only separable warps leave one along an axis where it is.
-    batch.aligned[i] = size[axis] > aligned_cosine && domain.warp.separable() ? 1.0f : 0.0f;
+    if (domain.warp.view_volume()) batch.aligned[i] = 0.0f;
 }
 
 }  // namespace interreflect

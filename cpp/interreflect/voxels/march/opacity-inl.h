@@ -14,6 +14,12 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
+/// The coordinate whose number is `axis`, lane by lane.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V of_axis(D d, V axis, V x, V y, V z) {
+    return hn::IfThenElse(hn::Lt(axis, hn::Set(d, 0.5f)), x, hn::IfThenElse(hn::Lt(axis, hn::Set(d, 1.5f)), y, z));
+}
+
 /// Integral of the tent of the trilinear filter from -infinity to x (texels).
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V tent_integral(D d, V x) {

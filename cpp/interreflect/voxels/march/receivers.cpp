@@ -48,36 +48,38 @@ HWY_INLINE void frame_axes(const Vec3& n, Vec3 axes[3]) {
     axes[2] = n;
 }
 
-HWY_INLINE void store_axes(const Vec3& facing, const LongestAxis& longest, int i, Receivers& receivers) {
+HWY_INLINE void store_axes(int i, Receivers& receivers) {
     const Tag d;
     Vec3 axes[3];
     frame_axes(load_rows(receivers.normal, i), axes);
     for (int a = 0; a < 3; ++a) {
-        hn::Store(axes[a].x, d, receivers.per_axis[Receivers::dx][a] + i);
-        hn::Store(axes[a].y, d, receivers.per_axis[Receivers::dy][a] + i);
-        hn::Store(axes[a].z, d, receivers.per_axis[Receivers::dz][a] + i);
-        hn::Store(plain_dot(axes[a], facing), d, receivers.per_axis[Receivers::slope][a] + i);
-        hn::Store(longest.of(axes[a]), d, receivers.per_axis[Receivers::axis_direction][a] + i);
+        hn::Store(axes[a].x, d, receivers.per_axis[0][a] + i);
+        hn::Store(axes[a].y, d, receivers.per_axis[1][a] + i);
+        hn::Store(axes[a].z, d, receivers.per_axis[2][a] + i);
     }
 }
 
+/// As set_start.
 HWY_INLINE void store_start(const Domain& domain, float normal_offset, bool see_own_surface, const Vec3& surface,
-                            const Vec3& facing, const Vec3& size, const LongestAxis& longest, int i, ConeBatch& batch) {
+                            const Vec3& facing, int i, ConeBatch& batch) {
     const Tag d;
     const Vector offset = hn::Set(d, normal_offset), one = hn::Set(d, 1.0f), zero = hn::Zero(d);
-    const Vec3 start{hn::Add(surface.x, hn::Mul(facing.x, offset)), hn::Add(surface.y, hn::Mul(facing.y, offset)),
-                     hn::Add(surface.z, hn::Mul(facing.z, offset))};
+    const Vec3 size{hn::Abs(facing.x), hn::Abs(facing.y), hn::Abs(facing.z)};
+    const LongestAxis longest(size);
     const Vec3 cells{hn::Set(d, static_cast<float>(domain.cells.x)), hn::Set(d, static_cast<float>(domain.cells.y)),
                      hn::Set(d, static_cast<float>(domain.cells.z))};
-    hn::Store(start.x, d, batch.x + i);
-    hn::Store(start.y, d, batch.y + i);
-    hn::Store(start.z, d, batch.z + i);
-    hn::Store(offset, d, batch.height + i);
+    hn::Store(hn::Add(surface.x, hn::Mul(facing.x, offset)), d, batch.x + i);
+    hn::Store(hn::Add(surface.y, hn::Mul(facing.y, offset)), d, batch.y + i);
+    hn::Store(hn::Add(surface.z, hn::Mul(facing.z, offset)), d, batch.z + i);
+    hn::Store(facing.x, d, batch.nx + i);
+    hn::Store(facing.y, d, batch.ny + i);
+    hn::Store(facing.z, d, batch.nz + i);
+    hn::Store(hn::Neg(plain_dot(facing, surface)), d, batch.height + i);
     hn::Store(see_own_surface ? zero : hn::Add(hn::Add(size.x, size.y), size.z), d, batch.width + i);
+    hn::Store(longest.of({zero, one, hn::Add(one, one)}), d, batch.axis + i);
     hn::Store(longest.of(surface), d, batch.axis_plane + i);
-    hn::Store(longest.of(start), d, batch.axis_start + i);
     hn::Store(longest.of(cells), d, batch.axis_cells + i);
-    hn::Store(hn::IfThenElseZero(hn::Gt(longest.of(size), hn::Set(d, 0.99f)), one), d, batch.aligned + i);
+    hn::Store(hn::IfThenElseZero(hn::Gt(longest.of(size), hn::Set(d, aligned_cosine)), one), d, batch.aligned + i);
 }
 
 /// The last vector may reach beyond `count`: its other lanes are never read.
@@ -87,12 +89,10 @@ void start_lanes(const Domain& domain, float normal_offset, bool see_own_surface
     batch.count = receivers.count;
     for (int i = 0; i < receivers.count; i += static_cast<int>(hn::Lanes(d))) {
         const Vec3 position = load_rows(receivers.position, i), facing = load_rows(receivers.facing, i);
-        const Vec3 size{hn::Abs(facing.x), hn::Abs(facing.y), hn::Abs(facing.z)};
         const Vec3 surface{to_voxels(position.x, domain.lower.x, scale), to_voxels(position.y, domain.lower.y, scale),
                            to_voxels(position.z, domain.lower.z, scale)};
-        const LongestAxis longest(size);
-        store_axes(facing, longest, i, receivers);
-        store_start(domain, normal_offset, see_own_surface, surface, facing, size, longest, i, batch);
+        store_axes(i, receivers);
+        store_start(domain, normal_offset, see_own_surface, surface, facing, i, batch);
         for (auto& row : receivers.sum) hn::Store(hn::Zero(d), d, row + i);
     }
 }

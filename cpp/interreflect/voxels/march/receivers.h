@@ -6,14 +6,13 @@ namespace interreflect {
 
 struct Receivers {
     static constexpr int capacity = ConeBatch::capacity;
-    enum { dx, dy, dz, slope, axis_direction, rows };
 
     int count = 0;
     int pixel[capacity];
     // World space position, geometric and shading normal, as the G-buffer has them.
     alignas(64) float position[3][capacity], facing[3][capacity], normal[3][capacity];
-    alignas(64) float per_axis[rows][3][capacity];  // of each row, by tangent, bitangent and normal
-    alignas(64) float sum[7][capacity];             // radiance, openness, sky
+    alignas(64) float per_axis[3][3][capacity];  // of a direction's x, y, z: by tangent, bitangent and normal
+    alignas(64) float sum[7][capacity];          // radiance, openness, sky
 
     void add(int at, const vec3& where, const vec3& geometric, const vec3& shading) {
         const int i = count++;

@@ -20,12 +20,6 @@ namespace hn = hwy::HWY_NAMESPACE;
 template <class V>
 struct Lanes3 {
     V x, y, z;
-
-    /// The coordinate of that number, lane by lane.
-    template <class D>
-    HWY_INLINE V of(D d, V axis) const {
-        return hn::IfThenElse(hn::Lt(axis, hn::Set(d, 0.5f)), x, hn::IfThenElse(hn::Lt(axis, hn::Set(d, 1.5f)), y, z));
-    }
 };
 template <class V>
 HWY_INLINE V dot(const Lanes3<V>& a, const Lanes3<V>& b) {
