@@ -7,6 +7,7 @@ void ContributionSink::begin_placed() {
     origin_ = t.linear[0];
     linear_area_ = handing_ == Handing::grids ? static_cast<float>(1 << (2 * t.cascade)) : 1.0f;
     if (handing_ != Handing::pieces && handing_ != Handing::sampled) return;
+    middle_ = (t.corner[0] + t.corner[1] + t.corner[2]) / 3.0f;
     along_[0] = t.linear[1] - t.linear[0];
     along_[1] = t.linear[2] - t.linear[0];
     const vec3 e1 = t.corner[1] - t.corner[0], e2 = t.corner[2] - t.corner[0], normal = glm::cross(e1, e2);

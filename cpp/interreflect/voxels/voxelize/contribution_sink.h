@@ -28,18 +28,20 @@ class ContributionSink {
     /// A sample of the current triangle at `position` voxels that stands for `area`; dropped outside the domain.
     [[gnu::always_inline]] void add(const vec3& position, float area, bool solid, const vec3& albedo, const vec3& emitted) {
         if (warps_samples_) return add_warped(position, area, solid, albedo, emitted);
-        const vec3 floor = glm::floor(position);
+        const vec3 at = plain_ ? position : within_piece(position);
+        const vec3 floor = glm::floor(at);
         if (!inside(floor)) return;
-        add(ivec3(floor), position - floor - 0.5f, area, solid, albedo, emitted);
+        add(ivec3(floor), at - floor - 0.5f, area, solid, albedo, emitted);
     }
     /// The only sample of the current triangle.
     [[gnu::always_inline]] void add_only(const vec3& position, bool solid, const vec3& albedo, const vec3& emitted) {
         if (warps_samples_) return add_warped(position, triangle_->area, solid, albedo, emitted);
-        const vec3 floor = glm::floor(position);
+        const vec3 at = plain_ ? position : within_piece(position);
+        const vec3 floor = glm::floor(at);
         if (!inside(floor)) return;
         ++samples;
         const float area = triangle_->area, share = solid ? area : 0.0f;
-        keep(domain_.cell(ivec3(floor)), vec4(albedo, 1.0f) * share, vec4((position - floor - 0.5f) * share, area),
+        keep(domain_.cell(ivec3(floor)), vec4(albedo, 1.0f) * share, vec4((at - floor - 0.5f) * share, area),
              emitted * share);
     }
     /// The same with the cell given, which lies in the domain, and the position from its centre.
@@ -109,6 +111,8 @@ class ContributionSink {
     const Handing handing_;
     const bool plain_, warps_samples_;
     CellMarks& marks_;
+    /// A hair towards the middle: pieces end at the faces of nested grids, and what lies on a face belongs to the piece's grid.
+    vec3 within_piece(const vec3& position) const { return position + (middle_ - position) * 1e-4f; }
     /// Linear voxels of a place in the current piece.
     vec3 linear_in_piece(const vec3& q) const {
         const vec3 from = q - triangle_->corner[0];
@@ -116,7 +120,7 @@ class ContributionSink {
     }
 
     // Of a piece: q are warped voxels, p linear ones. Weights of its second and third corner are to_weights_ (q - first corner).
-    vec3 to_weights_[2] = {}, origin_{0}, along_[2] = {};
+    vec3 to_weights_[2] = {}, origin_{0}, along_[2] = {}, middle_{0};
     float linear_area_ = 1;  // of a face of a voxel
     const VoxelTriangle* triangle_ = nullptr;
     bool emits_ = false;
