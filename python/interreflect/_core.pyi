@@ -323,172 +323,6 @@ class GBuffer:
     @property
     def width(self) -> int:
         ...
-class DirectLight:
-    """
-    Light that the pixels of a G-buffer reflect once, towards the camera.
-    """
-
-    @property
-    def bytes(self) -> int:
-        ...
-
-    @property
-    def counts(self) -> Counts:
-        ...
-
-    @property
-    def radiance(self) -> numpy.typing.NDArray[numpy.float32]:
-        """
-        (height, width, 3) view, W/(m^2 sr).
-        """
-class ShadowMap:
-    """Depth seen from every light, compared 3 x 3; emitters by traced samples."""
-    description: ClassVar[dict[str, Any]]
-    stages: ClassVar[tuple[str, ...]]
-
-    def __init__(self, *, size: int=..., bias: float=..., samples: int=...) -> None:
-        ...
-
-    def replace(self, *, size: int=..., bias: float=..., samples: int=...) -> ShadowMap:
-        ...
-
-    def asdict(self) -> dict[str, Any]:
-        ...
-
-    def __hash__(self) -> int:
-        ...
-
-    def __eq__(self, other: object) -> bool:
-        ...
-
-    @property
-    def size(self) -> int:
-        ...
-
-    @property
-    def bias(self) -> float:
-        ...
-
-    @property
-    def samples(self) -> int:
-        ...
-class TracedShadows:
-    """A ray to every point, spot and directional light; stratified samples of the emitters."""
-    description: ClassVar[dict[str, Any]]
-    stages: ClassVar[tuple[str, ...]]
-
-    def __init__(self, *, samples: int=...) -> None:
-        ...
-
-    def replace(self, *, samples: int=...) -> TracedShadows:
-        ...
-
-    def asdict(self) -> dict[str, Any]:
-        ...
-
-    def __hash__(self) -> int:
-        ...
-
-    def __eq__(self, other: object) -> bool:
-        ...
-
-    @property
-    def samples(self) -> int:
-        ...
-class ConeSky:
-    """What the march's cones leave open of the environment."""
-    description: ClassVar[dict[str, Any]]
-    stages: ClassVar[tuple[str, ...]]
-
-    def __init__(self) -> None:
-        ...
-
-    def replace(self) -> ConeSky:
-        ...
-
-    def asdict(self) -> dict[str, Any]:
-        ...
-
-    def __hash__(self) -> int:
-        ...
-
-    def __eq__(self, other: object) -> bool:
-        ...
-class TracedSky:
-    """Stratified rays to the environment; irradiance filtered along surfaces if so wished."""
-    description: ClassVar[dict[str, Any]]
-    stages: ClassVar[tuple[str, ...]]
-
-    def __init__(self, *, samples: int=..., filter_radius: int=...) -> None:
-        ...
-
-    def replace(self, *, samples: int=..., filter_radius: int=...) -> TracedSky:
-        ...
-
-    def asdict(self) -> dict[str, Any]:
-        ...
-
-    def __hash__(self) -> int:
-        ...
-
-    def __eq__(self, other: object) -> bool:
-        ...
-
-    @property
-    def samples(self) -> int:
-        ...
-
-    @property
-    def filter_radius(self) -> int:
-        ...
-class ReflectiveShadowMap:
-    """
-    What a light sees, and the flux that every texel's surface sends on: (size, size[, 3]) views.
-    """
-
-    @property
-    def alpha(self) -> numpy.typing.NDArray[numpy.float32]:
-        """
-        GGX width of the glossy lobe.
-        """
-
-    @property
-    def bytes(self) -> int:
-        ...
-
-    @property
-    def counts(self) -> Counts:
-        ...
-
-    @property
-    def flux(self) -> numpy.typing.NDArray[numpy.float32]:
-        """
-        Flux that the diffuse lobe sends on: albedo times incident, W.
-        """
-
-    @property
-    def incident(self) -> numpy.typing.NDArray[numpy.float32]:
-        """
-        Flux that arrives through the texel, W.
-        """
-
-    @property
-    def normal(self) -> numpy.typing.NDArray[numpy.float32]:
-        """
-        Shading normal on the light's side; (0, 0, 0) where nothing is met.
-        """
-
-    @property
-    def position(self) -> numpy.typing.NDArray[numpy.float32]:
-        """
-        World space; (0, 0, 0) where nothing is met.
-        """
-
-    @property
-    def specular(self) -> numpy.typing.NDArray[numpy.float32]:
-        """
-        Reflectance of the glossy lobe at normal incidence.
-        """
 class PathTraced:
     """
     Radiance of every pixel, W/(m^2 sr): read-only (height, width, 3) views.
@@ -867,6 +701,12 @@ class VoxelGrid:
         """
 
     @property
+    def area(self) -> typing.Any:
+        """
+        (n,): area of the solid surface inside, in faces of an unwarped voxel of the finest grid.
+        """
+
+    @property
     def bytes(self) -> int:
         """
         Memory the arrays hold.
@@ -984,10 +824,86 @@ class Pyramid:
         """
 
     @property
+    def lit(self) -> LitVoxels:
+        """
+        The voxels it was made from.
+        """
+
+    @property
     def scale(self) -> float:
         """
         Radiance of a stored 1.
         """
+class Tessellation:
+    """The vertices of triangles tessellated down to voxels, averaged in the cell they fall into."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self, *, spacing: float=..., max_level: int=..., split: bool=..., levels: str=...) -> None:
+        ...
+
+    def replace(self, *, spacing: float=..., max_level: int=..., split: bool=..., levels: str=...) -> Tessellation:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+
+    @property
+    def spacing(self) -> float:
+        ...
+
+    @property
+    def max_level(self) -> int:
+        ...
+
+    @property
+    def split(self) -> bool:
+        ...
+
+    @property
+    def levels(self) -> str:
+        ...
+class Rasterization:
+    """Every triangle rasterized along its dominant axis; a fragment is put into the cell it falls into."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self, *, samples: int=..., conservative: str=..., oversampling: int=..., blend: str=...) -> None:
+        ...
+
+    def replace(self, *, samples: int=..., conservative: str=..., oversampling: int=..., blend: str=...) -> Rasterization:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+
+    @property
+    def samples(self) -> int:
+        ...
+
+    @property
+    def conservative(self) -> str:
+        ...
+
+    @property
+    def oversampling(self) -> int:
+        ...
+
+    @property
+    def blend(self) -> str:
+        ...
 class SurfaceSampling:
     """Uniform samples over every triangle, averaged in the cell they fall into."""
     description: ClassVar[dict[str, Any]]
@@ -1061,15 +977,247 @@ class TracedLighting:
     @property
     def both_sides(self) -> bool:
         ...
-class OctantCoverage:
-    """Surface coverage, with the colour that is seen along each of eight directions."""
+class ShadowMapInjection:
+    """What each light's shadow map meets lights the voxel there; emitters and environment by traced samples."""
     description: ClassVar[dict[str, Any]]
     stages: ClassVar[tuple[str, ...]]
 
-    def __init__(self, *, levels: int=...) -> None:
+    def __init__(self, *, size: int=..., radiance: str=..., samples: int=..., both_sides: bool=...) -> None:
         ...
 
-    def replace(self, *, levels: int=...) -> OctantCoverage:
+    def replace(self, *, size: int=..., radiance: str=..., samples: int=..., both_sides: bool=...) -> ShadowMapInjection:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+
+    @property
+    def size(self) -> int:
+        ...
+
+    @property
+    def radiance(self) -> str:
+        ...
+
+    @property
+    def samples(self) -> int:
+        ...
+
+    @property
+    def both_sides(self) -> bool:
+        ...
+class ConeLighting:
+    """By the averaged normal, with a shadow cone through the voxels to each light, and cones for the environment."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self, *, half_angle: float=..., samples: int=..., sky_cones: int=..., both_sides: bool=..., step: float=..., first_diameter: float=..., normal_offset: float=..., level_bias: float=..., density: float=..., correlation: float=..., cut_off: float=..., own_surface: bool=..., start: str=..., start_height: float=..., most_steps: int=..., step_growth: float=..., opacity_correction: bool=...) -> None:
+        ...
+
+    def replace(self, *, half_angle: float=..., samples: int=..., sky_cones: int=..., both_sides: bool=..., step: float=..., first_diameter: float=..., normal_offset: float=..., level_bias: float=..., density: float=..., correlation: float=..., cut_off: float=..., own_surface: bool=..., start: str=..., start_height: float=..., most_steps: int=..., step_growth: float=..., opacity_correction: bool=...) -> ConeLighting:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+
+    @property
+    def half_angle(self) -> float:
+        ...
+
+    @property
+    def samples(self) -> int:
+        ...
+
+    @property
+    def sky_cones(self) -> int:
+        ...
+
+    @property
+    def both_sides(self) -> bool:
+        ...
+
+    @property
+    def step(self) -> float:
+        ...
+
+    @property
+    def first_diameter(self) -> float:
+        ...
+
+    @property
+    def normal_offset(self) -> float:
+        ...
+
+    @property
+    def level_bias(self) -> float:
+        ...
+
+    @property
+    def density(self) -> float:
+        ...
+
+    @property
+    def correlation(self) -> float:
+        ...
+
+    @property
+    def cut_off(self) -> float:
+        ...
+
+    @property
+    def own_surface(self) -> bool:
+        ...
+
+    @property
+    def start(self) -> str:
+        ...
+
+    @property
+    def start_height(self) -> float:
+        ...
+
+    @property
+    def most_steps(self) -> int:
+        ...
+
+    @property
+    def step_growth(self) -> float:
+        ...
+
+    @property
+    def opacity_correction(self) -> bool:
+        ...
+class Bounces:
+    """Besides its own light, what cones gather from the last frame's pyramid: all bounces after some frames."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self, *, light_voxels: Any=..., cones: int=..., step: float=..., first_diameter: float=..., normal_offset: float=..., level_bias: float=..., density: float=..., correlation: float=..., cut_off: float=..., own_surface: bool=..., start: str=..., start_height: float=..., most_steps: int=..., step_growth: float=..., opacity_correction: bool=...) -> None:
+        ...
+
+    def replace(self, *, light_voxels: Any=..., cones: int=..., step: float=..., first_diameter: float=..., normal_offset: float=..., level_bias: float=..., density: float=..., correlation: float=..., cut_off: float=..., own_surface: bool=..., start: str=..., start_height: float=..., most_steps: int=..., step_growth: float=..., opacity_correction: bool=...) -> Bounces:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+
+    @property
+    def light_voxels(self) -> Any:
+        ...
+
+    @property
+    def cones(self) -> int:
+        ...
+
+    @property
+    def step(self) -> float:
+        ...
+
+    @property
+    def first_diameter(self) -> float:
+        ...
+
+    @property
+    def normal_offset(self) -> float:
+        ...
+
+    @property
+    def level_bias(self) -> float:
+        ...
+
+    @property
+    def density(self) -> float:
+        ...
+
+    @property
+    def correlation(self) -> float:
+        ...
+
+    @property
+    def cut_off(self) -> float:
+        ...
+
+    @property
+    def own_surface(self) -> bool:
+        ...
+
+    @property
+    def start(self) -> str:
+        ...
+
+    @property
+    def start_height(self) -> float:
+        ...
+
+    @property
+    def most_steps(self) -> int:
+        ...
+
+    @property
+    def step_growth(self) -> float:
+        ...
+
+    @property
+    def opacity_correction(self) -> bool:
+        ...
+class BlendHistory:
+    """A technique whose light is blended with the last frame's, or brought to a part of the voxels a frame."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self, *, light_voxels: Any=..., weight: float=..., slabs: int=...) -> None:
+        ...
+
+    def replace(self, *, light_voxels: Any=..., weight: float=..., slabs: int=...) -> BlendHistory:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+
+    @property
+    def light_voxels(self) -> Any:
+        ...
+
+    @property
+    def weight(self) -> float:
+        ...
+
+    @property
+    def slabs(self) -> int:
+        ...
+class SphericalHarmonicVoxels:
+    """Surface coverage, with radiance in two bands of spherical harmonics."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self, *, levels: int=..., opacity: str=...) -> None:
+        ...
+
+    def replace(self, *, levels: int=..., opacity: str=...) -> SphericalHarmonicVoxels:
         ...
 
     def asdict(self) -> dict[str, Any]:
@@ -1083,6 +1231,37 @@ class OctantCoverage:
 
     @property
     def levels(self) -> int:
+        ...
+
+    @property
+    def opacity(self) -> str:
+        ...
+class OctantCoverage:
+    """Surface coverage, with the colour that is seen along each of eight directions."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self, *, levels: int=..., opacity: str=...) -> None:
+        ...
+
+    def replace(self, *, levels: int=..., opacity: str=...) -> OctantCoverage:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+
+    @property
+    def levels(self) -> int:
+        ...
+
+    @property
+    def opacity(self) -> str:
         ...
 class Anisotropic:
     """Six faces, each composited front to back along its direction, then averaged."""
@@ -1112,10 +1291,10 @@ class SurfaceCoverage:
     description: ClassVar[dict[str, Any]]
     stages: ClassVar[tuple[str, ...]]
 
-    def __init__(self, *, levels: int=..., kernel: str=..., format: str=...) -> None:
+    def __init__(self, *, levels: int=..., kernel: str=..., format: str=..., opacity: str=...) -> None:
         ...
 
-    def replace(self, *, levels: int=..., kernel: str=..., format: str=...) -> SurfaceCoverage:
+    def replace(self, *, levels: int=..., kernel: str=..., format: str=..., opacity: str=...) -> SurfaceCoverage:
         ...
 
     def asdict(self) -> dict[str, Any]:
@@ -1137,6 +1316,10 @@ class SurfaceCoverage:
 
     @property
     def format(self) -> str:
+        ...
+
+    @property
+    def opacity(self) -> str:
         ...
 class VolumeCoverage:
     """A texel is the mean of the eight below it."""
@@ -1169,6 +1352,251 @@ class VolumeCoverage:
     @property
     def format(self) -> str:
         ...
+class DirectLight:
+    """
+    Light that the pixels of a G-buffer reflect once, towards the camera.
+    """
+
+    @property
+    def bytes(self) -> int:
+        ...
+
+    @property
+    def counts(self) -> Counts:
+        ...
+
+    @property
+    def radiance(self) -> numpy.typing.NDArray[numpy.float32]:
+        """
+        (height, width, 3) view, W/(m^2 sr).
+        """
+class VoxelCones:
+    """A cone through the voxels to every point, spot and directional light; emitters by traced samples."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self, *, half_angle: float=..., samples: int=..., step: float=..., first_diameter: float=..., normal_offset: float=..., level_bias: float=..., density: float=..., correlation: float=..., cut_off: float=..., own_surface: bool=..., start: str=..., start_height: float=..., most_steps: int=..., step_growth: float=..., opacity_correction: bool=...) -> None:
+        ...
+
+    def replace(self, *, half_angle: float=..., samples: int=..., step: float=..., first_diameter: float=..., normal_offset: float=..., level_bias: float=..., density: float=..., correlation: float=..., cut_off: float=..., own_surface: bool=..., start: str=..., start_height: float=..., most_steps: int=..., step_growth: float=..., opacity_correction: bool=...) -> VoxelCones:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+
+    @property
+    def half_angle(self) -> float:
+        ...
+
+    @property
+    def samples(self) -> int:
+        ...
+
+    @property
+    def step(self) -> float:
+        ...
+
+    @property
+    def first_diameter(self) -> float:
+        ...
+
+    @property
+    def normal_offset(self) -> float:
+        ...
+
+    @property
+    def level_bias(self) -> float:
+        ...
+
+    @property
+    def density(self) -> float:
+        ...
+
+    @property
+    def correlation(self) -> float:
+        ...
+
+    @property
+    def cut_off(self) -> float:
+        ...
+
+    @property
+    def own_surface(self) -> bool:
+        ...
+
+    @property
+    def start(self) -> str:
+        ...
+
+    @property
+    def start_height(self) -> float:
+        ...
+
+    @property
+    def most_steps(self) -> int:
+        ...
+
+    @property
+    def step_growth(self) -> float:
+        ...
+
+    @property
+    def opacity_correction(self) -> bool:
+        ...
+class ShadowMap:
+    """Depth seen from every light, compared 3 x 3; emitters by traced samples."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self, *, size: int=..., bias: float=..., samples: int=...) -> None:
+        ...
+
+    def replace(self, *, size: int=..., bias: float=..., samples: int=...) -> ShadowMap:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+
+    @property
+    def size(self) -> int:
+        ...
+
+    @property
+    def bias(self) -> float:
+        ...
+
+    @property
+    def samples(self) -> int:
+        ...
+class TracedShadows:
+    """A ray to every point, spot and directional light; stratified samples of the emitters."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self, *, samples: int=...) -> None:
+        ...
+
+    def replace(self, *, samples: int=...) -> TracedShadows:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+
+    @property
+    def samples(self) -> int:
+        ...
+class ConeSky:
+    """What the march's cones leave open of the environment."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self) -> None:
+        ...
+
+    def replace(self) -> ConeSky:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+class TracedSky:
+    """Stratified rays to the environment; irradiance filtered along surfaces if so wished."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self, *, samples: int=..., filter_radius: int=...) -> None:
+        ...
+
+    def replace(self, *, samples: int=..., filter_radius: int=...) -> TracedSky:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+
+    @property
+    def samples(self) -> int:
+        ...
+
+    @property
+    def filter_radius(self) -> int:
+        ...
+class ReflectiveShadowMap:
+    """
+    What a light sees, and the flux that every texel's surface sends on: (size, size[, 3]) views.
+    """
+
+    @property
+    def alpha(self) -> numpy.typing.NDArray[numpy.float32]:
+        """
+        GGX width of the glossy lobe.
+        """
+
+    @property
+    def bytes(self) -> int:
+        ...
+
+    @property
+    def counts(self) -> Counts:
+        ...
+
+    @property
+    def flux(self) -> numpy.typing.NDArray[numpy.float32]:
+        """
+        Flux that the diffuse lobe sends on: albedo times incident, W.
+        """
+
+    @property
+    def incident(self) -> numpy.typing.NDArray[numpy.float32]:
+        """
+        Flux that arrives through the texel, W.
+        """
+
+    @property
+    def normal(self) -> numpy.typing.NDArray[numpy.float32]:
+        """
+        Shading normal on the light's side; (0, 0, 0) where nothing is met.
+        """
+
+    @property
+    def position(self) -> numpy.typing.NDArray[numpy.float32]:
+        """
+        World space; (0, 0, 0) where nothing is met.
+        """
+
+    @property
+    def specular(self) -> numpy.typing.NDArray[numpy.float32]:
+        """
+        Reflectance of the glossy lobe at normal incidence.
+        """
 class GatheredLight:
     """
     What arrives at the pixels over the hemisphere about the shading normal; zero where nothing was hit.
@@ -1428,6 +1856,10 @@ def _rebuild(arg0: typing.Any, arg1: dict[str, typing.Any]) -> typing.Any:
     """
     Makes a technique again from its knobs (pickle).
     """
+def cone_shadow(technique: VoxelCones, scene: Scene, gbuffer: GBuffer, pyramids: collections.abc.Sequence[Pyramid], seed: typing.SupportsInt | typing.SupportsIndex=0) -> DirectLight:
+    """
+    VoxelCones through the pyramids of one scene's voxels, one or more.
+    """
 def cone_sky(gbuffer: GBuffer, gathered: typing.Any, glossy: typing.Any | None=None) -> DirectLight:
     """
     What the march's cones left open: albedo / pi * gathered.sky + glossy.sky.
@@ -1440,9 +1872,9 @@ def glossy(technique: TracedRays | GlossyCone, pyramid: Pyramid, gbuffer: GBuffe
     """
     Light that the glossy lobe reflects.
     """
-def light_voxels(technique: TracedLighting, scene: Scene, voxels: VoxelGrid, seed: typing.SupportsInt | typing.SupportsIndex=0) -> LitVoxels:
+def light_voxels(technique: TracedLighting | ShadowMapInjection | ConeLighting | Bounces | BlendHistory, scene: Scene, voxels: VoxelGrid, seed: typing.SupportsInt | typing.SupportsIndex=0, history: None | Pyramid | LitVoxels=None) -> LitVoxels:
     """
-    The radiance that each voxel reflects.
+    The radiance that each voxel reflects. history: the last frame's LitVoxels, or the Pyramid made from them.
     """
 def march(technique: TracedRays | DiffuseCones, pyramid: Pyramid, gbuffer: GBuffer, scene: Scene, share: EveryPixel | Interleaved, seed: typing.SupportsInt | typing.SupportsIndex) -> GatheredLight:
     """
@@ -1460,7 +1892,7 @@ def place(grid: Grid, scene: Scene, camera: Camera | None=None, aspect: typing.S
     """
     The domain of a grid in a scene, for a picture `aspect` times as wide as high.
     """
-def prefilter(technique: VolumeCoverage | SurfaceCoverage | Anisotropic | OctantCoverage, lit: LitVoxels) -> Pyramid:
+def prefilter(technique: VolumeCoverage | SurfaceCoverage | Anisotropic | OctantCoverage | SphericalHarmonicVoxels, lit: LitVoxels) -> Pyramid:
     """
     Radiance and opacity of ever larger voxels.
     """
@@ -1504,7 +1936,7 @@ def vector_bytes() -> int:
     """
     Bytes of the widest vectors of this machine.
     """
-def voxelize(technique: ExactOverlap | SurfaceSampling, scene: Scene, domain: Domain) -> VoxelGrid:
+def voxelize(technique: ExactOverlap | SurfaceSampling | Rasterization | Tessellation, scene: Scene, domain: Domain) -> VoxelGrid:
     """
     The voxels of the scene's surface.
     """

@@ -42,7 +42,8 @@ def lobe(technique, cos_o, cos_i, cos_h, cos_oh):
 def test_direct_light_reflects_by_the_published_formula(shadow, technique):
     scene = floor(albedo=(0.4,) * 3, specular=(SPECULAR,) * 3, roughness=ROUGHNESS)
     gbuffer = ir.trace_gbuffer(scene, "view", SIZE, shade=technique)
-    found = ir.shadow(shadow(), scene, gbuffer).radiance
+    pyramids = [pyramid_of(scene)] if shadow is ir.VoxelCones else []
+    found = ir.shadow(shadow(), scene, gbuffer, pyramids=pyramids).radiance
     view = np.asarray(scene.cameras["view"].position) - gbuffer.position
     view /= np.linalg.norm(view, axis=2, keepdims=True)
     light = -SUN / np.linalg.norm(SUN)

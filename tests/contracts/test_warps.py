@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
+from tests.contracts.voxel_scenes import scene_of, soup
 
 import interreflect as ir
 from interreflect import _core
-from tests.contracts.voxel_scenes import scene_of, soup
 
 
 def camera(position=(0.4, -0.3, 2.6), target=(-0.2, 0.1, 0.0)):

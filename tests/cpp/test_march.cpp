@@ -225,7 +225,7 @@ TEST(Cones, WithoutOpacityCorrectionBlendOneTexelAStep) {
         ConeBatch batch{};
         batch.count = 1;
         set_start(batch, 0, pyramid.domain, {32, 32, 32}, {0, 0, 1}, 0.0f, true);
-        set_direction(batch, 0, {0, 0, 1}, {1, 0, 0});
+        set_direction(batch, 0, {1, 0, 0});
         const ConeShape shape{.first_diameter = 1.0f, .step = step, .most_steps = 20, .opacity_correction = false};
         march_cones(pyramid, AirMap(pyramid), make_schedule(shape, pyramid), 0.0f, batch);
         EXPECT_NEAR(std::log(batch.open[0]) / std::log(1.0f - a), 20.0f, 0.1f) << step;

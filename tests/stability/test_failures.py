@@ -85,7 +85,7 @@ def test_the_wall_that_hides_sky_is_the_infinite_ones_limit():
 
 class Broken(ir.methods.ConstantAmbient):
     def compose(self, view, profile):
-        direct, indirect = super().compose(view, profile)
+        direct, indirect, *_ = super().compose(view, profile)
         return direct, np.where(direct > 0, np.nan, indirect).astype(np.float32)
 
 

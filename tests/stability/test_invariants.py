@@ -44,7 +44,7 @@ class Absolute(ir.methods.ConstantAmbient):
     def compose(self, view, profile):
         from interreflect import _core
 
-        direct, indirect = super().compose(view, profile)
+        direct, indirect, *_ = super().compose(view, profile)
         extent = np.ptp(view.scene.bounds, axis=0).max() + np.abs(view.scene.bounds).max()
         return direct, (indirect + direct**2) * np.float32(extent * (1 + 0.1 * _core.thread_limit())) + np.float32(1e-3)
 

@@ -87,7 +87,7 @@ class Planted(VoxelConeTracing):
     fault: str = ""
 
     def compose(self, view, profile):
-        direct, indirect = super().compose(view, profile)
+        direct, indirect, *_ = super().compose(view, profile)
         guilty = bool(self.fault) and not isinstance(getattr(self, self.fault), _core.stages[self.fault]["exact"])
         wrong = np.float32(1 + guilty)
         return (direct * wrong, indirect) if self.fault == "shadow" else (direct, indirect * wrong)
