@@ -152,7 +152,8 @@ void bind_grid(py::module_& m) {
     array_property(cls, "emission", &VoxelGrid::emission, "(n, 3): mean radiance that the front emits, W/(m^2 sr).");
     array_property(cls, "position", &VoxelGrid::position, "(n, 3): mean position of the surface, world space.");
     array_property(cls, "opacity", &VoxelGrid::opacity, "(n,): solid share of the surface, below 1 where a mask has holes.");
-    array_property(cls, "area", &VoxelGrid::area, "(n,): area of the solid surface inside, in faces of an unwarped voxel of the finest grid.");
+    array_property(cls, "area", &VoxelGrid::area,
+                   "(n,): area of the solid surface inside, in faces of an unwarped voxel of the finest grid.");
     cls.def_property_readonly(
         "coordinates",
         [](const VoxelGrid& grid) {

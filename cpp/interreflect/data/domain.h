@@ -95,9 +95,7 @@ struct Domain {
         return true;
     }
     /// Centre of a cell, linear voxels.
-    vec3 linear_centre(std::uint32_t number) const {
-        return linear_of({cascade_of(number), vec3(coordinates(number)) + 0.5f});
-    }
+    vec3 linear_centre(std::uint32_t number) const { return linear_of({cascade_of(number), vec3(coordinates(number)) + 0.5f}); }
     /// A point, in linear voxels, from which positions in a cell are measured while they are summed up: its centre where that is
     /// known without inverting a warp.
     vec3 reference(std::uint32_t number) const {

@@ -69,8 +69,9 @@ struct LitVoxels {
 /// `faces` of a level is the number of its volumes, one after the other: 1; 6, for what is seen through the texel's faces
 /// -x +x -y +y -z +z from outside; or 8, for what is seen along the octants of directions. Of six, an eye looking along d reads
 /// face 0 where d.x > 0 and 1 where d.x < 0 (it looks at the side that faces it), and so on; it blends the three by d * d. Of
-/// eight it reads number (d.x > 0) + 2 (d.y > 0) + 4 (d.z > 0); their opacities agree. The finest level has one or eight. Four are
-/// radiance in two bands of spherical harmonics: it sees number 0 plus d.x, d.y and d.z times the others (whose A is 0), at least 0.
+/// eight it reads number (d.x > 0) + 2 (d.y > 0) + 4 (d.z > 0); their opacities agree. The finest level has one or eight. Four
+/// are radiance in two bands of spherical harmonics: it sees number 0 plus d.x, d.y and d.z times the others (whose A is 0), at
+/// least 0.
 struct Pyramid {
     struct Level {
         ivec3 size{0}, origin{0};

@@ -71,7 +71,8 @@ ConeCounts march_batch(const Pyramid& pyramid, const AirMap& air, const ConeSche
             const unsigned bits = static_cast<unsigned>(bytes[0]) | (static_cast<unsigned>(bytes[1]) << 8);
             sample_lanes(d, bits, l0, two ? fine : coarse, two ? &l1 : nullptr, coarse, step.blend, batch.dx + first, octants,
                          colour);
-            counts.fetches += static_cast<std::uint64_t>(hn::CountTrue(d, seeing)) * (fetches_of(l1) + (two ? fetches_of(l0) : 0));
+            counts.fetches +=
+                static_cast<std::uint64_t>(hn::CountTrue(d, seeing)) * (fetches_of(l1) + (two ? fetches_of(l0) : 0));
             V tr, tg, tb, ta;
             hn::LoadInterleaved4(d, colour, tr, tg, tb, ta);
             ta = hn::IfThenElseZero(seeing, hn::Min(hn::Max(ta, zero), one));

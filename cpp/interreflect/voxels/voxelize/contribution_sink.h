@@ -41,8 +41,7 @@ class ContributionSink {
         if (!inside(floor)) return;
         ++samples;
         const float area = triangle_->area, share = solid ? area : 0.0f;
-        keep(domain_.cell(ivec3(floor)), vec4(albedo, 1.0f) * share, vec4((at - floor - 0.5f) * share, area),
-             emitted * share);
+        keep(domain_.cell(ivec3(floor)), vec4(albedo, 1.0f) * share, vec4((at - floor - 0.5f) * share, area), emitted * share);
     }
     /// The same with the cell given, which lies in the domain, and the position from its centre.
     [[gnu::always_inline]] void add(const ivec3& at, const vec3& local, float area, bool solid, const vec3& albedo,
