@@ -1,0 +1,106 @@
+"""Every figure and table of a paper is a file with studies and a chart of their records; each runs at a small size on a stand-in scene."""
+
+import dataclasses
+from importlib import import_module
+
+import matplotlib.figure
+import pytest
+from experiments.figures import LEDGER, PAPERS, draw, figures_of, main, make, names, questions
+from experiments.ledger.book import CLAIMS
+from experiments.shared import scenes
+from experiments.shared.keep import records_of
+
+import interreflect as ir
+
+FIGURES = [name for paper in PAPERS for name in figures_of(paper)]
+OF_FREED = [
+    *("1_1", "4_1", "4_3", "4_4", "4_5", "4_6", "4_7", "4_8", "4_9", "4_10", "4_11"),
+    *(f"5_{k}" for k in range(1, 10)),
+]  # 4.2 is a diagram of samples in a pixel
+QUICK = ("freed/figure_4_3", "freed/figure_5_2", "rehfeld/surface_coverage", "rehfeld/alternating_layers")
+
+
+@pytest.fixture
+def stand_in(monkeypatch):
+    """The atrium in the place of Sponza, with the cameras' names."""
+    atrium = ir.scenes.atrium()
+    sun = ir.DirectionalLight(direction=(0.2, -1, 0.1), irradiance=(3, 3, 3))
+    scene = atrium.replace(lights=[*atrium.lights, sun], cameras={"nave": atrium.camera, "gallery": atrium.camera})
+    scenes.load.cache_clear()
+    monkeypatch.setattr(scenes, "load", lambda path: scene)
+
+
+def smaller(study):
+    """The same question with few pixels and samples, and grids that take no time."""
+    less = {"grid.resolution": lambda n: n // 4, "texels": lambda n: n // 16, "frames": lambda n: 2}
+    less |= {"light_voxels.size": lambda n: max(n // 16, 4), "shadow.size": lambda n: n // 16}
+    methods = []
+    for method in study.methods:
+        knobs = method.knobs()
+        methods.append(method.replace({name: shrink(knobs[name]) for name, shrink in less.items() if name in knobs}))
+    return dataclasses.replace(
+        study, methods=methods, size=(48, 32), repeats=min(study.repeats, 1), max_repeats=1, reference=ir.Reference(noise=1.0, max_spp=4)
+    )
+
+
+def test_every_figure_and_table_of_the_thesis_has_its_file():
+    assert {f"freed/figure_{n}" for n in OF_FREED} | {"freed/table_5_1", "freed/table_5_2"} <= set(FIGURES)
+
+
+@pytest.mark.parametrize("name", FIGURES)
+def test_a_figure_says_what_it_shows_and_its_studies_are_well_formed(name, stand_in):
+    module = import_module(f"experiments.{name.replace('/', '.')}")
+    caption = module.__doc__.splitlines()[0]
+    assert caption.partition(":")[0].removeprefix("Figure ").removeprefix("Table ").replace(".", "").isalnum() and len(caption) > 30
+    number = name.rpartition("/")[2]
+    if number.startswith(("figure", "table")):
+        assert caption.lower().startswith(number.replace("_", " ", 1).replace("_", "."))
+    studies = module.studies()
+    assert studies and all(study.cells() for study in studies)
+    assert len({study.name for study in studies}) == len(studies)
+
+
+def test_studies_of_one_name_are_the_same_study(stand_in):
+    """Records are kept by the study's name."""
+    found = {}
+    for name in FIGURES:
+        for study in import_module(f"experiments.{name.replace('/', '.')}").studies():
+            same = found.setdefault(study.name, study)
+            assert (same.methods, same.size, same.repeats, same.bounces) == (study.methods, study.size, study.repeats, study.bounces)
+
+
+def test_every_claim_that_is_tested_names_studies(stand_in):
+    for claim in CLAIMS:
+        if not claim.missing:
+            assert claim.studies(), claim.name
+
+
+@pytest.mark.parametrize("name", [name if name in QUICK else pytest.param(name, marks=pytest.mark.long) for name in FIGURES])
+def test_a_figure_is_drawn_from_records_and_drawn_again_without_measuring(name, stand_in, tmp_path, monkeypatch):
+    monkeypatch.setenv("INTERREFLECT_CACHE", str(tmp_path / "cache"))
+    module = import_module(f"experiments.{name.replace('/', '.')}")
+    small = [smaller(study) for study in module.studies()]
+    monkeypatch.setattr(module, "studies", lambda: small)
+    for path in draw(name, tmp_path):
+        assert path.stat().st_size > 1000
+    keys = [record.key for study in module.studies() for record in records_of(study, tmp_path)]
+    monkeypatch.setattr("interreflect.study.workers.Crew.measure", None)  # nothing may be measured now
+    chart = module.chart(*(records_of(study, tmp_path) for study in module.studies()))
+    assert isinstance(chart, matplotlib.figure.Figure)
+    assert [record.key for study in module.studies() for record in records_of(study, tmp_path)] == keys
+
+
+def test_a_name_is_a_question_a_paper_a_figure_or_the_ledger(capsys):
+    assert {"freed", "rehfeld", "freed/table_5_1", LEDGER} <= set(names()) and set(questions()) <= set(names())
+    with pytest.raises(SystemExit):
+        main(["freed/figure_9_9"])
+    assert "freed/figure_9_9" in capsys.readouterr().err
+
+
+def test_a_figure_whose_scene_is_not_here_is_left_out_and_said_so(monkeypatch, capsys, tmp_path):
+    def absent(path):
+        raise FileNotFoundError(f"{path}: tried here and there")
+
+    monkeypatch.setattr(scenes, "load", absent)
+    make("freed/figure_5_1", tmp_path)
+    assert "left out" in capsys.readouterr().out and not list(tmp_path.glob("**/*.png"))
