@@ -24,7 +24,7 @@ PASSES = {
 
 
 def studies() -> Sequence[ir.Study]:
-    ways = [freed(voxelize=ir.Tessellation(), grid__resolution=n) for n in RESOLUTIONS]
+    ways = [freed(voxelize=ir.Tessellation(spacing=1.0, split=False), grid__resolution=n) for n in RESOLUTIONS]
     return [timed("times of the passes", ways, size) for size in SIZES]
 
 

@@ -12,23 +12,24 @@ from experiments.freed.pipeline import freed, timed
 from experiments.shared.panels import table_figure
 
 RESOLUTIONS = (64, 128, 256)
+RASTERIZED, TESSELLATED, CLOSED = "rasterized, 4 samples", "tessellated as printed", "tessellated, no holes"
 
 
 def studies() -> Sequence[ir.Study]:
     """Small pictures: voxelizing does not depend on their size."""
-    ways = [
-        freed(voxelize=way, grid__resolution=n, glossy=None)
-        for way in (ir.Rasterization(samples=4), ir.Tessellation())
-        for n in RESOLUTIONS
+    ways = [ir.Rasterization(samples=4), ir.Tessellation(spacing=1.0, split=False), ir.Tessellation()]
+    return [
+        timed("both voxelizations", [freed(voxelize=way, grid__resolution=n, glossy=None) for way in ways for n in RESOLUTIONS], (160, 90))
     ]
-    return [timed("both voxelizations", ways, (160, 90))]
 
 
 def table(records: ir.Records) -> pd.DataFrame:
     """Milliseconds: a row per size of the grid, a column per way to voxelize."""
-    return records.table.pivot_table(index="grid.resolution", columns="voxelize", values="stage.voxelize.milliseconds")
+    names = [name for name in (RASTERIZED, TESSELLATED, CLOSED) for _ in RESOLUTIONS]
+    times = records.table.assign(way=names).pivot_table(index="grid.resolution", columns="way", values="stage.voxelize.milliseconds")
+    return times[[RASTERIZED, TESSELLATED, CLOSED]]
 
 
 def chart(records: ir.Records) -> Figure:
-    shown = table(records).rename(index=lambda n: f"{n}^3")
+    shown = table(records).rename(index=lambda n: f"{n}^3").rename(columns=lambda name: name.replace(", ", ",\n"))
     return table_figure(shown, "milliseconds to voxelize Sponza (medians)")

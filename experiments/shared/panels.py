@@ -63,6 +63,6 @@ def table_figure(table: pd.DataFrame, title: str) -> Figure:
     drawn.auto_set_font_size(False)
     drawn.set_fontsize(8)
     for (row, _), cell in drawn.get_celld().items():
-        cell.set(linewidth=0.4, height=0.16 if row == 0 and "\n" in heads[0] else 0.1)
+        cell.set(linewidth=0.4, height=(1.7 if row == 0 and any("\n" in head for head in heads) else 1.0) / (len(table) + 3))
     axes.set_title(title, fontsize=9)
     return figure
