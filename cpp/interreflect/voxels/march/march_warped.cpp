@@ -114,6 +114,7 @@ ConeCounts march_vector(const Map& map, const LevelTable& table, const ConeSched
     const V exit = map.exit(d, start, direction);
     const V limit = batch.limited ? hn::Load(d, batch.limit + first) : hn::Set(d, 1e30f);
     const auto has_plane = hn::Gt(width, zero);
+    const bool harmonics = table.views[table.last].faces == 4;  // of directions in the world
     auto active = hn::FirstN(d, static_cast<std::size_t>(std::min(batch.count - first, lanes)));
     V r = zero, g = zero, b = zero, open = one;
     ConeCounts counts;
@@ -139,9 +140,10 @@ ConeCounts march_vector(const Map& map, const LevelTable& table, const ConeSched
         place_levels(d, table, hn::Min(hn::Add(level, hn::Set(di, 1)), last), next_texels, at.voxels, sight.coarse);
         hn::Store(level, di, sight.level);
         hn::Store(blend, d, sight.blend);
-        hn::Store(at.toward.x, d, sight.toward);
-        hn::Store(at.toward.y, d, sight.toward + max_lanes);
-        hn::Store(at.toward.z, d, sight.toward + 2 * max_lanes);
+        const Lanes3<V>& seen_along = harmonics ? direction : at.toward;
+        hn::Store(seen_along.x, d, sight.toward);
+        hn::Store(seen_along.y, d, sight.toward + max_lanes);
+        hn::Store(seen_along.z, d, sight.toward + 2 * max_lanes);
         store_octants(d, at.toward.x, at.toward.y, at.toward.z, sight.octant);
         uint8_t bytes[8] = {};
         hn::StoreMaskBits(d, seeing, bytes);

@@ -38,12 +38,14 @@ vec3 texel_radiance(const Pyramid& pyramid, int grid, const ivec3& at) {
            (pyramid.scale / glm::unpackHalf1x16(texel[3]));
 }
 
-/// The side of the voxel that faces most as the surface that was seen does.
-vec3 side_radiance(const LitVoxels& lit, std::uint32_t cell, const vec3& seen_normal) {
+/// The side of the voxel that faces most as the surface that was seen does. In nested grids a texel may be opaque by what a finer
+/// grid holds: it shows what its texel does.
+vec3 side_radiance(const Pyramid& pyramid, int grid, const ivec3& at, const vec3& seen_normal) {
+    const LitVoxels& lit = *pyramid.lit;
     const auto& cells = lit.grid->cell;
+    const std::uint32_t cell = pyramid.domain.cell(at, grid);
     const auto found = std::lower_bound(cells.begin(), cells.end(), cell);
-    // In nested grids a texel may be opaque by what a finer grid holds.
-    if (found == cells.end() || *found != cell) return vec3(0);
+    if (found == cells.end() || *found != cell) return texel_radiance(pyramid, grid, at);
     const auto voxel = static_cast<std::size_t>(found - cells.begin());
     const bool back =
         !lit.back.empty() && glm::dot(lit.grid->backs[voxel].normal - lit.grid->points[voxel].normal, seen_normal) > 0.0f;
@@ -63,7 +65,7 @@ vec3 radiance_at_hit(const Pyramid& pyramid, const Scene& scene, const Hit& hit,
     ivec3 cell = glm::clamp(ivec3(glm::floor(point)), ivec3(0), domain.cells - 1);
     if (!nearest_occupied(pyramid, grid, point, cell)) return vec3(0);
     if (pyramid.lit == nullptr) return texel_radiance(pyramid, grid, cell);
-    return side_radiance(*pyramid.lit, domain.cell(cell, grid), back ? -at.geometric_normal : at.geometric_normal);
+    return side_radiance(pyramid, grid, cell, back ? -at.geometric_normal : at.geometric_normal);
 }
 
 }  // namespace interreflect

@@ -37,12 +37,26 @@ void reduce_slice_faces(const LevelView& fine, const LevelView& coarse, int z) {
 /// that side sees nothing else.
 HWY_INLINE V sided(const VoxelView& voxels, std::size_t i, int face) {
     const D d;
-    const float outwards = voxels.normal[3 * i + static_cast<std::size_t>(face >> 1)] * ((face & 1) != 0 ? 1.0f : -1.0f);
+    const float outwards =
+        voxels.normal[i * voxels.normal_stride + static_cast<std::size_t>(face >> 1)] * ((face & 1) != 0 ? 1.0f : -1.0f);
     const float back = outwards >= -0.3f ? 0.0f : outwards <= -0.5f ? 1.0f : (-0.3f - outwards) * 5.0f;
     const V front_side = premultiplied(voxels.radiance + 3 * i, voxels.opacity[i], voxels.inverse_scale);
     if (back == 0.0f || voxels.back == nullptr) return front_side;
     const V back_side = premultiplied(voxels.back + 3 * i, voxels.opacity[i], voxels.inverse_scale);
     return hn::MulAdd(hn::Sub(back_side, front_side), hn::Set(d, back), front_side);
+}
+
+/// The six faces of slices 2 z and 2 z + 1 of a grid's level.
+void write_slices_faces(const LevelView& level, const VoxelView& voxels, int z) {
+    VoxelView none = voxels;
+    none.end = none.begin;
+    for (int face = 0; face < 6; ++face) {
+        LevelView volume = level;
+        volume.texels += static_cast<std::size_t>(face) * level.volume;
+        write_slices(volume, none, z, false);
+        for (std::size_t i = voxels.begin; i < voxels.end; ++i)
+            write_voxel(volume, texel_of(level, voxels, i), sided(voxels, i, face));
+    }
 }
 
 /// One slice of the second level's six faces, from the voxels themselves; `number` is scratch: 1 + voxel of every finest texel of
@@ -86,25 +100,28 @@ namespace interreflect {
 namespace {
 HWY_EXPORT(reduce_slice_faces);
 HWY_EXPORT(write_slices);
+HWY_EXPORT(write_slices_faces);
 HWY_EXPORT(first_faces_slice);
 }  // namespace
 
 Pyramid build_anisotropic(const LevelKnobs& knobs, const LitVoxels& lit) {
     Pyramid pyramid = make_levels(lit.grid->domain, 6, knobs);
     pyramid.scale = radiance_scale(lit);
-    const VoxelView voxels = view(lit, pyramid.scale);
-    const LevelView finest = view(pyramid.levels[0]);
-    const std::size_t per_pair = 2 * static_cast<std::size_t>(finest.nx) * static_cast<std::size_t>(finest.ny);
-    parallel_pieces(static_cast<std::size_t>((finest.nz + 1) / 2), [&](std::size_t piece) {
-        const int z = static_cast<int>(piece);
-        const VoxelView inside = slices_of(voxels, pyramid.domain, z);
-        HWY_DYNAMIC_DISPATCH(write_slices)(finest, inside, z, false);
-        if (pyramid.levels.size() == 1) return;
-        std::vector<std::uint32_t> number(per_pair, 0);
-        HWY_DYNAMIC_DISPATCH(first_faces_slice)(finest, view(pyramid.levels[1]), inside, z, number.data());
+    const Normals normals = in_grid(mean_normals(lit), lit);
+    const VoxelView voxels = view(lit, pyramid.scale, normals);
+    write_coarse_grids(pyramid, voxels, [](const LevelView& level, const VoxelView& inside, int z) {
+        HWY_DYNAMIC_DISPATCH(write_slices_faces)(level, inside, z);
     });
-    reduce_coarse(pyramid, [&](const LevelView& fine, const LevelView& coarse, int z) {
-        HWY_DYNAMIC_DISPATCH(reduce_slice_faces)(fine, coarse, z);
+    const bool more = pyramid.levels.size() > 1;
+    const LevelView coarse = more ? above(pyramid, 0) : LevelView{};
+    write_grid(pyramid, voxels, 0, [&](const LevelView& finest, const VoxelView& inside, int z) {
+        HWY_DYNAMIC_DISPATCH(write_slices)(finest, inside, z, false);
+        if (!more) return;
+        std::vector<std::uint32_t> number(2 * static_cast<std::size_t>(finest.nx) * static_cast<std::size_t>(finest.ny), 0);
+        HWY_DYNAMIC_DISPATCH(first_faces_slice)(finest, coarse, inside, z, number.data());
+    });
+    reduce_coarse(pyramid, [](const LevelView& fine, const LevelView& filled, int z) {
+        HWY_DYNAMIC_DISPATCH(reduce_slice_faces)(fine, filled, z);
     });
     pyramid.counts.voxels = lit.grid->size();
     return pyramid;

@@ -112,28 +112,28 @@ void reduce_slice(const LevelView& fine, const LevelView& coarse, int z, const I
 
 /// The four volumes of slices 2 z and 2 z + 1. Of a step between two hemispheres band 0 is the mean, and band 1, whose three
 /// functions are the direction's coordinates c with mean c^2 = 1/3, is 3 times the mean of (B - F)/2 |d . n|: 3/4 (B - F) n.
-void write_slices_harmonics(const LevelView& finest, const VoxelView& voxels, int z) {
+void write_slices_harmonics(const LevelView& level, const VoxelView& voxels, int z) {
     const D d;
     VoxelView none = voxels;
     none.end = none.begin;
-    LevelView volumes[4] = {finest, finest, finest, finest};
+    LevelView volumes[4] = {level, level, level, level};
     for (std::size_t v = 0; v < 4; ++v) {
-        volumes[v].texels += v * finest.volume;
+        volumes[v].texels += v * level.volume;
         write_slices(volumes[v], none, z, false);
     }
     for (std::size_t i = voxels.begin; i < voxels.end; ++i) {
-        const auto cell = static_cast<int>(voxels.cell[i]);
-        const int line = cell / finest.nx, x = cell % finest.nx, y = line % finest.ny, vz = line / finest.ny;
+        const Texel texel = texel_of(level, voxels, i);
         const V front = premultiplied(voxels.radiance + 3 * i, voxels.opacity[i], voxels.inverse_scale);
         if (voxels.back == nullptr) {
-            write_voxel(volumes[0], x, y, vz, front);
+            write_voxel(volumes[0], texel, front);
             continue;
         }
         const V back = premultiplied(voxels.back + 3 * i, voxels.opacity[i], voxels.inverse_scale), half = hn::Set(d, 0.5f);
-        write_voxel(volumes[0], x, y, vz, hn::Mul(hn::Add(front, back), half));
+        write_voxel(volumes[0], texel, hn::Mul(hn::Add(front, back), half));
         const V step = hn::Mul(hn::Sub(back, front), hn::Set(d, 0.75f));  // opacity cancels
         for (int axis = 0; axis < 3; ++axis)
-            write_voxel(volumes[axis + 1], x, y, vz, hn::Mul(step, hn::Set(d, voxels.points[i].normal[axis])));
+            write_voxel(volumes[axis + 1], texel,
+                        hn::Mul(step, hn::Set(d, voxels.normal[i * voxels.normal_stride + static_cast<std::size_t>(axis)])));
     }
 }
 
@@ -149,24 +149,14 @@ HWY_EXPORT(reduce_slice);
 HWY_EXPORT(write_slices);
 HWY_EXPORT(write_slices_harmonics);
 
-/// The finest level by `write(its view, slice)`, the others from the one below.
 template <class Write>
-void build_levels(Pyramid& pyramid, const IsotropicFilter& filter, const Write& write) {
-    const auto reduce = [&](const LevelView& fine, const LevelView& coarse, int z) {
-        thread_local std::vector<float> sums;
-        sums.resize(4 * (static_cast<std::size_t>(fine.nx) + 3) * static_cast<std::size_t>(filter.volumes));
-        HWY_DYNAMIC_DISPATCH(reduce_slice)(fine, coarse, z, filter, sums.data());
-    };
-    const LevelView finest = view(pyramid.levels[0]);
-    const bool more = pyramid.levels.size() > 1, wide = filter.tent || filter.columns;
-    parallel_pieces(static_cast<std::size_t>((finest.nz + 1) / 2), [&](std::size_t piece) {
-        const int z = static_cast<int>(piece);
-        write(finest, z);
-        if (more && !wide) reduce(finest, view(pyramid.levels[1]), z);
-    });
-    // They reach into slices that other pieces write.
-    if (more && wide) over_slices(pyramid.levels[1], [&](int z) { reduce(finest, view(pyramid.levels[1]), z); });
-    reduce_coarse(pyramid, reduce);
+void build_filtered(Pyramid& pyramid, const VoxelView& voxels, const IsotropicFilter& filter, const Write& write) {
+    build_levels(pyramid, voxels, filter.tent || filter.columns, write,
+                 [&](const LevelView& fine, const LevelView& coarse, int z) {
+                     thread_local std::vector<float> sums;
+                     sums.resize(4 * (static_cast<std::size_t>(fine.nx) + 3) * static_cast<std::size_t>(filter.volumes));
+                     HWY_DYNAMIC_DISPATCH(reduce_slice)(fine, coarse, z, filter, sums.data());
+                 });
 }
 
 }  // namespace
@@ -176,22 +166,20 @@ Pyramid build_isotropic(Coverage coverage, bool columns, const IsotropicKnobs& k
     Pyramid pyramid = make_levels(lit.grid->domain, 1, knobs);
     const float scale = radiance_scale(lit);  // refuses what is not finite
     pyramid.scale = filter.eight_bits ? 1.0f : scale;
-    const VoxelView voxels = view(lit, pyramid.scale);
-    build_levels(pyramid, filter, [&](const LevelView& finest, int z) {
-        HWY_DYNAMIC_DISPATCH(write_slices)(finest, slices_of(voxels, pyramid.domain, z), z, filter.eight_bits);
+    build_filtered(pyramid, view(lit, pyramid.scale), filter, [&](const LevelView& level, const VoxelView& voxels, int z) {
+        HWY_DYNAMIC_DISPATCH(write_slices)(level, voxels, z, filter.eight_bits);
     });
-    pyramid.counts.voxels = lit.grid->size();
     return pyramid;
 }
 
 Pyramid build_harmonics(bool columns, const LevelKnobs& knobs, const LitVoxels& lit) {
     Pyramid pyramid = make_levels(lit.grid->domain, 4, knobs);
     pyramid.scale = radiance_scale(lit);
-    const VoxelView voxels = view(lit, pyramid.scale);
-    build_levels(pyramid, {Coverage::surface, false, false, columns, 4}, [&](const LevelView& finest, int z) {
-        HWY_DYNAMIC_DISPATCH(write_slices_harmonics)(finest, slices_of(voxels, pyramid.domain, z), z);
-    });
-    pyramid.counts.voxels = lit.grid->size();
+    const Normals normals = front_normals(lit);
+    build_filtered(pyramid, view(lit, pyramid.scale, normals), {Coverage::surface, false, false, columns, 4},
+                   [](const LevelView& level, const VoxelView& voxels, int z) {
+                       HWY_DYNAMIC_DISPATCH(write_slices_harmonics)(level, voxels, z);
+                   });
     return pyramid;
 }
 

@@ -114,8 +114,18 @@ HWY_INLINE V eight_bits(V value) {
     return hn::Mul(hn::Round(hn::Mul(clipped, whole)), hn::Set(d, 1.0f / 255.0f));
 }
 
+struct Texel {
+    int x, y, z;
+};
+HWY_INLINE Texel texel_of(const LevelView& level, const VoxelView& voxels, std::size_t i) {
+    const auto cell = static_cast<int>(voxels.cell[i] - voxels.base);
+    const int line = cell / level.nx;
+    return {cell % level.nx, line % level.ny, line / level.ny};
+}
+
 /// A voxel, and its copies in the border.
-HWY_INLINE void write_voxel(const LevelView& level, int x, int y, int z, V value) {
+HWY_INLINE void write_voxel(const LevelView& level, const Texel& texel, V value) {
+    const auto [x, y, z] = texel;
     store(value, level.texels + at(level, x, y, z));
     const bool inner = x > 0 && y > 0 && z > 0 && x + 1 < level.nx && y + 1 < level.ny && z + 1 < level.nz;
     if (inner) return;
@@ -125,20 +135,18 @@ HWY_INLINE void write_voxel(const LevelView& level, int x, int y, int z, V value
                 store(value, level.texels + at(level, bx, by, bz));
 }
 
-/// Slices 2 z and 2 z + 1 of the finest level (with the border next to them): cleared, then written; in `bytes`, radiance is
+/// Slices 2 z and 2 z + 1 of a grid's level (with the border next to them): cleared, then written; in `bytes`, radiance is
 /// clipped at 1 before opacity scales it.
-inline void write_slices(const LevelView& finest, const VoxelView& voxels, int z, bool bytes) {
-    const int first = z == 0 ? -1 : 2 * z, last = 2 * z + 2 >= finest.nz ? finest.nz : 2 * z + 1;
-    __builtin_memset(finest.texels + static_cast<std::size_t>(first + 1) * finest.slice, 0,
-                     static_cast<std::size_t>(last - first + 1) * finest.slice * sizeof(std::uint16_t));
+inline void write_slices(const LevelView& level, const VoxelView& voxels, int z, bool bytes) {
+    const int first = z == 0 ? -1 : 2 * z, last = 2 * z + 2 >= level.nz ? level.nz : 2 * z + 1;
+    __builtin_memset(level.texels + static_cast<std::size_t>(first + 1) * level.slice, 0,
+                     static_cast<std::size_t>(last - first + 1) * level.slice * sizeof(std::uint16_t));
     for (std::size_t i = voxels.begin; i < voxels.end; ++i) {
-        const auto cell = static_cast<int>(voxels.cell[i]);
-        const int line = cell / finest.nx;
         const float *radiance = voxels.radiance + 3 * i, opacity = voxels.opacity[i];
         const V value =
             bytes ? eight_bits(hn::Mul(hn::Min(premultiplied(radiance, 1.0f, 1.0f), hn::Set(D(), 1.0f)), hn::Set(D(), opacity)))
                   : premultiplied(radiance, opacity, voxels.inverse_scale);
-        write_voxel(finest, cell % finest.nx, line % finest.ny, line / finest.ny, value);
+        write_voxel(level, texel_of(level, voxels, i), value);
     }
 }
 

@@ -20,19 +20,29 @@ struct IsotropicFilter {
 /// A level as plain numbers, in halves: kernels of several targets share no functions.
 struct LevelView {
     std::uint16_t* texels;
-    int nx, ny, nz;
+    int nx, ny, nz, faces;
     std::size_t row, slice, volume;
 };
-/// The voxels of some slices of the finest level.
+/// Normals as filters compare them with directions, `stride` floats from one to the next.
+struct Normals {
+    const float* first = nullptr;
+    std::size_t stride = 3;
+    Buffer<vec3> own{};  // where they are not the voxels' as they are
+};
+/// The voxels of some slices of one grid; its first cell has the number `base`.
 struct VoxelView {
     const std::uint32_t* cell;
-    const float *radiance, *back, *normal, *opacity;
-    const VoxelPoint* points;
-    std::size_t begin, end;
+    const float *radiance, *back, *opacity, *normal;
+    std::size_t normal_stride, begin, end;
     float inverse_scale;
+    std::uint32_t base = 0;
 };
 
-/// The pyramid's empty levels, at most as many as the knobs say: memory not yet written.
+/// The most bytes of a pyramid.
+constexpr std::uint64_t most_bytes = std::uint64_t{4} << 30;
+
+/// The pyramid's empty levels, at most as many as the knobs say: memory not yet written. Throws std::invalid_argument where they
+/// would take more than `most_bytes`, or where fewer levels are allowed than there are nested grids.
 Pyramid make_levels(const Domain& domain, int faces, const LevelKnobs& knobs);
 
 /// The power of two that brings the largest radiance just below 2^15; 1 where there is none. Throws std::invalid_argument where a
@@ -40,22 +50,46 @@ Pyramid make_levels(const Domain& domain, int faces, const LevelKnobs& knobs);
 float radiance_scale(const LitVoxels& lit);
 
 LevelView view(Pyramid::Level& level);
+/// The texels of level i + 1 that level i fills: all, but of a level that is a nested grid itself.
+LevelView above(Pyramid& pyramid, std::size_t i);
+
+/// Means of the front sides' normals, and normals of the points where fronts are lit: world space.
+Normals mean_normals(const LitVoxels& lit);
+Normals front_normals(const LitVoxels& lit);
+/// The same in the axes of a warped grid, along which its texels are looked at: what is perpendicular to surfaces there.
+Normals in_grid(Normals normals, const LitVoxels& lit);
 /// All voxels, with radiance divided by `scale`.
-VoxelView view(const LitVoxels& lit, float scale);
-/// The voxels in slices 2 z and 2 z + 1.
-VoxelView slices_of(VoxelView voxels, const Domain& domain, int z);
+VoxelView view(const LitVoxels& lit, float scale, const Normals& normals = {});
+/// The voxels of a grid in slices 2 z and 2 z + 1 of its level.
+VoxelView slices_of(VoxelView voxels, const LevelView& level, int z);
 
 /// Repeats the outermost texels of every slice in its border, and the outermost slices.
 void fill_border(Pyramid::Level& level);
 
-/// The slices of one level in pieces worth a thread's while.
+/// The slices of one level, or of a box in it, in pieces worth a thread's while.
 template <class Body>
-void over_slices(const Pyramid::Level& level, const Body& body) {
-    const std::size_t per_slice = static_cast<std::size_t>(level.size.x) * level.size.y * level.faces;
+void over_slices(const LevelView& level, const Body& body) {
+    const std::size_t per_slice = static_cast<std::size_t>(level.nx) * level.ny * level.faces;
     const std::size_t block = std::max<std::size_t>(1, 4096 / per_slice);
-    parallel_blocks(static_cast<std::size_t>(level.size.z), block, [&](std::size_t begin, std::size_t end) {
+    parallel_blocks(static_cast<std::size_t>(level.nz), block, [&](std::size_t begin, std::size_t end) {
         for (std::size_t z = begin; z < end; ++z) body(static_cast<int>(z));
     });
+}
+
+/// `write(level, voxels, z)` clears slices 2 z and 2 z + 1 of a nested grid's level and puts that grid's voxels in.
+template <class Write>
+void write_grid(Pyramid& pyramid, VoxelView voxels, int grid, const Write& write) {
+    const LevelView level = view(pyramid.levels[static_cast<std::size_t>(grid)]);
+    voxels.base = pyramid.domain.cell(ivec3(0), grid);
+    parallel_pieces(static_cast<std::size_t>((level.nz + 1) / 2), [&](std::size_t piece) {
+        const int z = static_cast<int>(piece);
+        write(level, slices_of(voxels, level, z), z);
+    });
+}
+/// All nested grids but the finest: each has no voxels where a finer one lies, whose texels come there later.
+template <class Write>
+void write_coarse_grids(Pyramid& pyramid, const VoxelView& voxels, const Write& write) {
+    for (int grid = 1; grid < pyramid.domain.cascades; ++grid) write_grid(pyramid, voxels, grid, write);
 }
 
 /// Levels from the third on, each from the one below it by `reduce(fine, coarse, slice)`, and the borders of all but the finest:
@@ -64,11 +98,26 @@ template <class Reduce>
 void reduce_coarse(Pyramid& pyramid, const Reduce& reduce) {
     for (std::size_t i = 1; i < pyramid.levels.size(); ++i) {
         if (i > 1) {
-            const LevelView fine = view(pyramid.levels[i - 1]), coarse = view(pyramid.levels[i]);
-            over_slices(pyramid.levels[i], [&](int z) { reduce(fine, coarse, z); });
+            const LevelView fine = view(pyramid.levels[i - 1]), coarse = above(pyramid, i - 1);
+            over_slices(coarse, [&](int z) { reduce(fine, coarse, z); });
         }
         fill_border(pyramid.levels[i]);
     }
+}
+
+/// Every level: nested grids by `write`, what is coarser by `reduce`. `reaches`: into slices that other pieces write.
+template <class Write, class Reduce>
+void build_levels(Pyramid& pyramid, const VoxelView& voxels, bool reaches, const Write& write, const Reduce& reduce) {
+    write_coarse_grids(pyramid, voxels, write);
+    const bool more = pyramid.levels.size() > 1;
+    const LevelView coarse = more ? above(pyramid, 0) : LevelView{};
+    write_grid(pyramid, voxels, 0, [&](const LevelView& finest, const VoxelView& inside, int z) {
+        write(finest, inside, z);
+        if (more && !reaches) reduce(finest, coarse, z);
+    });
+    if (more && reaches) over_slices(coarse, [&](int z) { reduce(view(pyramid.levels[0]), coarse, z); });
+    reduce_coarse(pyramid, reduce);
+    pyramid.counts.voxels = voxels.end;
 }
 
 /// `columns`: of OpacityKnob. Every level of one face: the finest one cleared and written from the voxels, each other one reduced

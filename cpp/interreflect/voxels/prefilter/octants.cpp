@@ -102,7 +102,7 @@ void reduce_slice_octants(const LevelView& fine, const LevelView& coarse, int z,
 }
 
 /// How far each octant's eyes see the front of a surface: the share of its normal's coordinates that point against them.
-HWY_INLINE void facing_shares(const vec3& normal, float shares[8]) {
+HWY_INLINE void facing_shares(const float* normal, float shares[8]) {
     float towards[3][2], sum = 0;  // of each axis: of eyes looking down it, and up
     for (int axis = 0; axis < 3; ++axis) {
         towards[axis][0] = normal[axis] > 0.0f ? normal[axis] : 0.0f;
@@ -130,7 +130,7 @@ HWY_INLINE void write_sides(const VoxelView& voxels, std::size_t i, std::uint16_
     const float* radiance = voxels.back + 3 * i;
     const bool lit = radiance[0] > 0.0f || radiance[1] > 0.0f || radiance[2] > 0.0f;
     hn::Store(premultiplied(radiance, voxels.opacity[i], voxels.inverse_scale), one, back);
-    facing_shares(voxels.points[i].normal, shares);
+    facing_shares(voxels.normal + i * voxels.normal_stride, shares);
     if (!lit)
         for (auto& share : shares) share = share > 0.25f ? 1.0f : 0.0f;
     const VO behind = lit ? hn::LoadDup128(d, back) : hn::Or(hn::LoadDup128(d, back), hidden_mark());
@@ -145,7 +145,8 @@ HWY_INLINE void write_sides(const VoxelView& voxels, std::size_t i, std::uint16_
 }
 
 /// Copies a voxel at the domain's edge into the border beside it.
-HWY_INLINE void repeat_outwards(const LevelView& level, int x, int y, int z) {
+HWY_INLINE void repeat_outwards(const LevelView& level, const Texel& inner) {
+    const auto [x, y, z] = inner;
     const std::uint16_t* texel = level.texels + at(level, x, y, z);
     for (int bz = (z == 0 ? -1 : z); bz <= (z + 1 == level.nz ? z + 1 : z); ++bz)
         for (int by = (y == 0 ? -1 : y); by <= (y + 1 == level.ny ? y + 1 : y); ++by)
@@ -155,23 +156,21 @@ HWY_INLINE void repeat_outwards(const LevelView& level, int x, int y, int z) {
                                       4 * sizeof(*texel));
 }
 
-/// Slices 2 z and 2 z + 1 of the finest level's eight octants.
-void write_slices_octants(const LevelView& finest, const VoxelView& voxels, int z) {
+/// Slices 2 z and 2 z + 1 of the eight octants of a grid's level.
+void write_slices_octants(const LevelView& level, const VoxelView& voxels, int z) {
     VoxelView none = voxels;
     none.end = none.begin;
     for (std::size_t octant = 0; octant < 8; ++octant) {
-        LevelView cleared = finest;
-        cleared.texels += octant * finest.volume;
+        LevelView cleared = level;
+        cleared.texels += octant * level.volume;
         write_slices(cleared, none, z, false);
     }
     for (std::size_t i = voxels.begin; i < voxels.end; ++i) {
-        const std::uint32_t cell = voxels.cell[i], line = cell / static_cast<std::uint32_t>(finest.nx);
-        const int x = static_cast<int>(cell % static_cast<std::uint32_t>(finest.nx));
-        const int vy = static_cast<int>(line % static_cast<std::uint32_t>(finest.ny));
-        const int vz = static_cast<int>(line / static_cast<std::uint32_t>(finest.ny));
-        write_sides(voxels, i, finest.texels + at(finest, x, vy, vz), finest.volume);
-        const bool inner = x > 0 && vy > 0 && vz > 0 && x + 1 < finest.nx && vy + 1 < finest.ny && vz + 1 < finest.nz;
-        if (!inner) repeat_outwards(finest, x, vy, vz);
+        const Texel texel = texel_of(level, voxels, i);
+        const auto [x, y, vz] = texel;
+        write_sides(voxels, i, level.texels + at(level, x, y, vz), level.volume);
+        const bool inner = x > 0 && y > 0 && vz > 0 && x + 1 < level.nx && y + 1 < level.ny && vz + 1 < level.nz;
+        if (!inner) repeat_outwards(level, texel);
     }
 }
 
@@ -192,23 +191,15 @@ HWY_EXPORT(write_slices_octants);
 Pyramid build_octants(bool columns, const LevelKnobs& knobs, const LitVoxels& lit) {
     Pyramid pyramid = make_levels(lit.grid->domain, 8, knobs);
     pyramid.scale = radiance_scale(lit);
-    const VoxelView voxels = view(lit, pyramid.scale);
-    const LevelView finest = view(pyramid.levels[0]);
-    const bool more = pyramid.levels.size() > 1;
-    parallel_pieces(static_cast<std::size_t>((finest.nz + 1) / 2), [&](std::size_t piece) {
-        const int z = static_cast<int>(piece);
-        HWY_DYNAMIC_DISPATCH(write_slices_octants)(finest, slices_of(voxels, pyramid.domain, z), z);
-        if (more && !columns) HWY_DYNAMIC_DISPATCH(reduce_slice_octants)(finest, view(pyramid.levels[1]), z, columns);
-    });
-    // Columns reach into slices that other pieces write.
-    if (more && columns)
-        over_slices(pyramid.levels[1], [&](int z) {
-            HWY_DYNAMIC_DISPATCH(reduce_slice_octants)(finest, view(pyramid.levels[1]), z, columns);
+    const Normals normals = in_grid(front_normals(lit), lit);
+    build_levels(
+        pyramid, view(lit, pyramid.scale, normals), columns,
+        [](const LevelView& level, const VoxelView& voxels, int z) {
+            HWY_DYNAMIC_DISPATCH(write_slices_octants)(level, voxels, z);
+        },
+        [&](const LevelView& fine, const LevelView& coarse, int z) {
+            HWY_DYNAMIC_DISPATCH(reduce_slice_octants)(fine, coarse, z, columns);
         });
-    reduce_coarse(pyramid, [&](const LevelView& fine, const LevelView& coarse, int z) {
-        HWY_DYNAMIC_DISPATCH(reduce_slice_octants)(fine, coarse, z, columns);
-    });
-    pyramid.counts.voxels = lit.grid->size();
     return pyramid;
 }
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstring>
 #include <stdexcept>
+#include <string>
 
 #include "voxels/prefilter/levels.h"
 
@@ -12,21 +13,50 @@ namespace {
 /// The vectors as floats, three each; there may be none.
 const float* floats(const Buffer<vec3>& vectors) { return reinterpret_cast<const float*>(vectors.data()); }
 
+std::size_t halves_of(const Pyramid::Level& level) { return level.volume() * static_cast<std::size_t>(level.faces) * 4; }
+
+std::string sizes_of(const Domain& domain) {
+    const std::string one =
+        std::to_string(domain.cells.x) + " x " + std::to_string(domain.cells.y) + " x " + std::to_string(domain.cells.z);
+    return domain.cascades > 1 ? std::to_string(domain.cascades) + " x " + one : one;
+}
+
 }  // namespace
 
 Pyramid make_levels(const Domain& domain, int faces, const LevelKnobs& knobs) {
-    if (domain.cascades > 1) throw std::invalid_argument("prefilter: nested grids cannot be filtered so far");
+    if (knobs.levels != 0 && knobs.levels < domain.cascades)
+        throw std::invalid_argument("prefilter: levels is " + std::to_string(knobs.levels) + ", but each of " +
+                                    std::to_string(domain.cascades) + " nested grids is a level");
     Pyramid pyramid;
     pyramid.domain = domain;
     pyramid.faces = faces;
-    for (ivec3 size = domain.cells;; size = (size + 1) / 2) {
+    std::uint64_t bytes = 0;
+    for (ivec3 size = domain.cells;;) {
+        const std::size_t number = pyramid.levels.size();
         Pyramid::Level level;
         level.size = size;
-        level.faces = pyramid.levels.empty() && faces == 6 ? 1 : faces;
-        level.texels = Buffer<std::uint16_t>(level.volume() * static_cast<std::size_t>(level.faces) * 4);
+        level.origin = number < static_cast<std::size_t>(domain.cascades) ? domain.origin[number] : ivec3(0);
+        level.faces = number == 0 && faces == 6 ? 1 : faces;
+        bytes += halves_of(level) * sizeof(std::uint16_t);
         pyramid.levels.push_back(std::move(level));
-        if (size == ivec3(1) || static_cast<int>(pyramid.levels.size()) == knobs.levels) return pyramid;
+        if (size == ivec3(1) || static_cast<int>(number) + 1 == knobs.levels) break;
+        if (static_cast<int>(number) + 1 >= domain.cascades) size = (size + 1) / 2;
     }
+    if (bytes > most_bytes)
+        throw std::invalid_argument("prefilter: a pyramid of " + sizes_of(domain) + " voxels would need " +
+                                    std::to_string(bytes) + " bytes, and at most " + std::to_string(most_bytes) + " are allowed");
+    for (auto& level : pyramid.levels) level.texels = Buffer<std::uint16_t>(halves_of(level));
+    return pyramid;
+}
+
+LevelView above(Pyramid& pyramid, std::size_t i) {
+    const Pyramid::Level& fine = pyramid.levels[i];
+    Pyramid::Level& coarse = pyramid.levels[i + 1];
+    const ivec3 first = fine.origin / 2 - coarse.origin, size = (fine.size + 1) / 2;
+    LevelView box = view(coarse);
+    box.texels += 4 * (coarse.index(first.x, first.y, first.z) - coarse.index(0, 0, 0));
+    box.nx = size.x, box.ny = size.y, box.nz = size.z;
+    return box;
 }
 
 float radiance_scale(const LitVoxels& lit) {
@@ -48,28 +78,55 @@ float radiance_scale(const LitVoxels& lit) {
 }
 
 LevelView view(Pyramid::Level& level) {
-    return {level.texels.data(), level.size.x,      level.size.y,      level.size.z,
-            level.row() * 4,     level.slice() * 4, level.volume() * 4};
+    return {level.texels.data(), level.size.x,    level.size.y,      level.size.z,
+            level.faces,         level.row() * 4, level.slice() * 4, level.volume() * 4};
 }
 
-VoxelView view(const LitVoxels& lit, float scale) {
+Normals mean_normals(const LitVoxels& lit) { return {floats(lit.grid->normal)}; }
+
+Normals front_normals(const LitVoxels& lit) {
+    static_assert(sizeof(VoxelPoint) % sizeof(float) == 0);
+    const auto& points = lit.grid->points;
+    return {points.empty() ? nullptr : &points[0].normal.x, sizeof(VoxelPoint) / sizeof(float)};
+}
+
+Normals in_grid(Normals normals, const LitVoxels& lit) {
+    const VoxelGrid& grid = *lit.grid;
+    if (grid.domain.warp.kind == Warp::Kind::linear) return normals;
+    Buffer<vec3> turned(grid.size());
+    parallel_blocks(grid.size(), 4096, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const float* n = normals.first + i * normals.stride;
+            const mat3 density = grid.domain.density(grid.domain.to_linear(grid.position[i]));
+            const vec3 across = glm::transpose(glm::inverse(density)) * vec3(n[0], n[1], n[2]);
+            const float length = glm::length(across);
+            turned[i] = length > 0.0f ? across / length : vec3(0);
+        }
+    });
+    normals.first = floats(turned);
+    normals.stride = 3;
+    normals.own = std::move(turned);
+    return normals;
+}
+
+VoxelView view(const LitVoxels& lit, float scale, const Normals& normals) {
     const VoxelGrid& grid = *lit.grid;
     return {grid.cell.data(),
             floats(lit.radiance),
             lit.back.empty() ? nullptr : floats(lit.back),
-            floats(grid.normal),
             grid.opacity.data(),
-            grid.points.data(),
+            normals.first,
+            normals.stride,
             0,
             grid.size(),
             1.0f / scale};
 }
 
-VoxelView slices_of(VoxelView voxels, const Domain& domain, int z) {
-    const auto per_slice = static_cast<std::uint64_t>(domain.cells.x) * static_cast<std::uint64_t>(domain.cells.y);
+VoxelView slices_of(VoxelView voxels, const LevelView& level, int z) {
+    const auto per_slice = static_cast<std::uint64_t>(level.nx) * static_cast<std::uint64_t>(level.ny);
     const auto first_of = [&](std::uint64_t slice) {
         const auto* end = voxels.cell + voxels.end;
-        return static_cast<std::size_t>(std::lower_bound(voxels.cell, end, slice * per_slice) - voxels.cell);
+        return static_cast<std::size_t>(std::lower_bound(voxels.cell, end, voxels.base + slice * per_slice) - voxels.cell);
     };
     const std::size_t begin = first_of(2 * static_cast<std::uint64_t>(z)), end = first_of(2 * static_cast<std::uint64_t>(z) + 2);
     voxels.begin = begin, voxels.end = end;
