@@ -9,7 +9,7 @@ from voxel_scenes import floor, quad, scene_of
 import interreflect as ir
 
 SIZE = (64, 48)
-VOLUMES = [ir.Perspective(), ir.Perspective(linear_depth=False), ir.Spherical(snap=False)]
+VOLUMES = [ir.Perspective(), ir.Perspective(linear_depth=False), ir.Spherical(far=10.0, snap=False)]
 FRONT, BACK = (0.8, 0.4, 0.2), (0.1, 0.2, 0.4)  # radiance of the two sides
 
 
@@ -37,7 +37,7 @@ def filtered(technique, scene, warp, resolution=32):
 
 def colours(texels):
     seen = texels[texels[..., 3] > 0]
-    assert len(seen) > 4
+    assert len(seen) > 0
     return seen[:, :3] / seen[:, 3:]
 
 
@@ -55,7 +55,7 @@ def test_octants_that_look_away_from_the_eye_see_what_faces_it(warp, turn):
 @pytest.mark.parametrize("turn", [(0, 0), (45, 0), (130, 35)])
 @pytest.mark.parametrize("warp", VOLUMES, ids=repr)
 def test_the_two_faces_across_depth_show_the_two_sides(warp, turn):
-    pyramid = filtered(ir.Anisotropic(), screen(towards(*turn)), warp)
+    pyramid = filtered(ir.Anisotropic(), screen(towards(*turn), half=0.4), warp)
     for face, side in ((4, FRONT), (5, BACK)):
         assert np.allclose(colours(pyramid.level(1, face)), side, rtol=0.01)
 
@@ -71,24 +71,27 @@ def test_harmonics_are_of_directions_in_the_world(warp):
     assert np.allclose(seen[:, 1:], ahead[:, None] * step, atol=2e-3)
 
 
-@pytest.mark.parametrize("warp", [ir.CubicSpline(), ir.Logistic(), ir.Perspective(), ir.Spherical()], ids=repr)
-@pytest.mark.parametrize("technique", [ir.OctantCoverage(), ir.Anisotropic(), ir.SphericalHarmonicVoxels()], ids=repr)
-def test_ground_before_a_screen_sees_its_near_side_only(technique, warp):
-    """A wall across the view, lit on its near or on its far side: the ground before it is lit by the first only."""
-    ahead = towards(40, 0)
+def ground_light(technique, warp, ahead, sign):
+    """Irradiance of the ground before a wall across the view, lit on its near (1) or its far side (-1): by cones, by rays."""
     right, up = np.cross(ahead, (0, 1, 0)), np.array((0, 1.0, 0))
     foot = 3.0 * ahead - (0, 0.5, 0)
     wall = quad([foot - right, foot + right, foot + right + up, foot - right + up], albedo=(0.8,) * 3)
     view = ir.Camera(position=(0, 0, 0), target=tuple(ahead - (0, 0.15, 0)), fov_x=70)
-    light = {}
-    for name, sign in (("near", 1), ("far", -1)):
-        sun = ir.DirectionalLight(direction=tuple(sign * ahead), irradiance=(1,) * 3)  # along the ground
-        scene = scene_of(floor(height=-0.5, half=5.0, albedo=(0.0,) * 3), wall, lights=[sun], cameras={"view": view})
-        pyramid = filtered(technique, scene, warp, 64)
-        gbuffer = ir.trace_gbuffer(scene, "view", SIZE)
-        before = (np.abs(gbuffer.position[..., 1] + 0.5) < 1e-3) & (np.abs(gbuffer.position @ ahead - 2.5) < 0.3)
-        before &= np.abs(gbuffer.position @ right) < 0.5
-        light[name] = ir.march(ir.DiffuseCones(), pyramid, gbuffer, scene, seed=1).irradiance[before].mean()
-        light["rays"] = light.get("rays") or ir.march(ir.TracedRays(samples=256), pyramid, gbuffer, scene, seed=1).irradiance[before].mean()
-    assert light["near"] == pytest.approx(light["rays"], rel=0.3)
-    assert light["far"] < 0.2 * light["near"]
+    sun = ir.DirectionalLight(direction=tuple(sign * ahead), irradiance=(1,) * 3)  # along the ground
+    scene = scene_of(floor(height=-0.5, half=5.0, albedo=(0.0,) * 3), wall, lights=[sun], cameras={"view": view})
+    gbuffer, pyramid = ir.trace_gbuffer(scene, "view", SIZE), filtered(technique, scene, warp, 64)
+    before = (np.abs(gbuffer.position[..., 1] + 0.5) < 1e-3) & (np.abs(gbuffer.position @ ahead - 2.5) < 0.3)
+    before &= np.abs(gbuffer.position @ right) < 0.5
+    return [ir.march(march, pyramid, gbuffer, scene, seed=1).irradiance[before].mean()
+            for march in (ir.DiffuseCones(), ir.TracedRays(samples=256))]  # fmt: skip
+
+
+@pytest.mark.parametrize("technique", [ir.OctantCoverage(), ir.Anisotropic(), ir.SphericalHarmonicVoxels()], ids=repr)
+def test_ground_before_a_screen_sees_its_near_side_only(technique):
+    ahead = towards(40, 0)
+    cones, rays = ground_light(technique, ir.Linear(), ahead, 1)
+    plain = cones / rays  # filters blur the wall's light towards the ground
+    for warp in (ir.CubicSpline(), ir.Logistic(), ir.Perspective(), ir.Spherical()):
+        cones, rays = ground_light(technique, warp, ahead, 1)
+        assert 0.9 < cones / rays < 1.05 * plain
+        assert ground_light(technique, warp, ahead, -1)[0] < 0.2 * cones
