@@ -16,7 +16,7 @@ LISTING: dict[str, Any] = {
 }  # fmt: skip
 
 FREED_2018: dict[str, Any] = {
-    "grid": _core.Grid(resolution=256),
+    "grid": _core.Grid(resolution=256, warp=_core.CubicSpline(alpha=0.25)),
     "voxelize": _core.Tessellation(spacing=1.0, split=False),
     "light_voxels": _core.ShadowMapInjection(size=4096),
     "prefilter": _core.VolumeCoverage(levels=6),
@@ -25,6 +25,8 @@ FREED_2018: dict[str, Any] = {
     "share": _core.EveryPixel(),
     "shade": _core.FreedCookTorrance(),
     "shadow": _core.ShadowMap(size=4096),
+    # The thesis has no environment. Its filter leaks, and cones would let a sky in that it never had: rays see the sky instead.
+    "sky": _core.TracedSky(),
 }
 
 # Section 4: a texel as wide as the cone, half its diameter a step, three quarters of a voxel at the start, half a step off it.
