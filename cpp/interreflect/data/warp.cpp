@@ -49,17 +49,8 @@ float half_width(float offset, float centre, float cells) { return offset < 0.0f
 
 vec3 Warp::to_voxels(const vec3& p, const ivec3& cells) const {
     if (kind == Kind::linear) return p;
+    if (separable()) return slopes_at(p, cells).voxels;
     const vec3 n(cells);
-    if (separable()) {
-        const Curve curve{kind, steepness};
-        vec3 q;
-        for (int axis = 0; axis < 3; ++axis) {
-            const float offset = p[axis] - centre[axis], half = half_width(offset, centre[axis], n[axis]);
-            q[axis] = half > 0.0f ? centre[axis] + std::copysign(half * curve.value(std::fabs(offset) / half), offset)
-                                  : centre[axis] + offset * curve.slope(0.0f);
-        }
-        return q;
-    }
     const float x = glm::dot(right, p), y = glm::dot(up, p), z = glm::dot(forward, p);
     if (kind == Kind::perspective) {
         const float depth = linear_depth ? (z - near) / (far - near) : (1.0f - near / z) / (1.0f - near / far);
@@ -93,18 +84,28 @@ vec3 Warp::to_linear(const vec3& q, const ivec3& cells) const {
     return near * std::pow(far / near, t.z) * (level * std::cos(above) + up * std::sin(above));
 }
 
+Warp::Slopes Warp::slopes_at(const vec3& p, const ivec3& cells) const {
+    if (kind == Kind::linear) return {p, vec3(1)};
+    const Curve curve{kind, steepness};
+    const vec3 n(cells);
+    Slopes at{};
+    for (int axis = 0; axis < 3; ++axis) {
+        const float offset = p[axis] - centre[axis], half = half_width(offset, centre[axis], n[axis]);
+        const float u = half > 0.0f ? std::fabs(offset) / half : 0.0f;
+        at.slopes[axis] = curve.slope(u);
+        at.voxels[axis] =
+            half > 0.0f ? centre[axis] + std::copysign(half * curve.value(u), offset) : centre[axis] + offset * curve.slope(0.0f);
+    }
+    return at;
+}
+
 mat3 Warp::density(const vec3& p, const ivec3& cells) const {
     if (kind == Kind::linear) return mat3(1.0f);
-    const vec3 n(cells);
     if (separable()) {
-        const Curve curve{kind, steepness};
-        mat3 slopes(0.0f);
-        for (int axis = 0; axis < 3; ++axis) {
-            const float offset = p[axis] - centre[axis], half = half_width(offset, centre[axis], n[axis]);
-            slopes[axis][axis] = curve.slope(half > 0.0f ? std::fabs(offset) / half : 0.0f);
-        }
-        return slopes;
+        const vec3 slopes = slopes_at(p, cells).slopes;
+        return {{slopes.x, 0, 0}, {0, slopes.y, 0}, {0, 0, slopes.z}};
     }
+    const vec3 n(cells);
     const float x = glm::dot(right, p), y = glm::dot(up, p), z = glm::dot(forward, p);
     vec3 rows[3];
     if (kind == Kind::perspective) {

@@ -29,6 +29,11 @@ struct Warp {
 
     vec3 to_voxels(const vec3& p, const ivec3& cells) const;
     vec3 to_linear(const vec3& q, const ivec3& cells) const;
+    /// Of a separable warp, place and density at once: most of its work is shared.
+    struct Slopes {
+        vec3 voxels, slopes;
+    };
+    Slopes slopes_at(const vec3& p, const ivec3& cells) const;
     /// Columns: dq/dp.x, dq/dp.y, dq/dp.z.
     mat3 density(const vec3& p, const ivec3& cells) const;
 

@@ -21,9 +21,10 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 /// The levels as vectors of cones read them, each cone at a level of its own.
 struct LevelTable {
-    LevelView views[32];
-    int32_t row[32], slice[32];
-    float origin_x[32], origin_y[32], origin_z[32];
+    static constexpr int capacity = 32;
+    LevelView views[capacity];
+    alignas(64) int32_t row[capacity] = {}, slice[capacity] = {};
+    alignas(64) float origin_x[capacity] = {}, origin_y[capacity] = {}, origin_z[capacity] = {};
     int last;
 
     explicit LevelTable(const Pyramid& pyramid, const AirMap& air) : last(static_cast<int>(pyramid.levels.size()) - 1) {
@@ -39,22 +40,60 @@ struct LevelTable {
     }
 };
 
-/// Trilinear taps at `at` voxels, each of its own level; `scale`: texels a voxel there.
-template <class D, class I, class V = hn::Vec<D>>
-HWY_INLINE void place_levels(D d, const LevelTable& table, I level, V scale, const Lanes3<V>& at, Taps& taps) {
+/// The entry of a table of levels for each cone. A grid has 11 levels at most: one register of sixteen lanes holds them all.
+template <class D, class I>
+HWY_INLINE hn::Vec<D> entry(D d, const hn::TFromD<D>* table, I level) {
+    if constexpr (hn::MaxLanes(D()) == 16)
+        return hn::TableLookupLanes(hn::Load(d, table), hn::IndicesFromVec(d, level));
+    else
+        return hn::GatherIndex(d, table, level);
+}
+
+/// The first texel of each cone's tap.
+template <class I>
+struct FirstTexels {
+    I x, y, z;
+};
+
+/// Trilinear taps at `at` voxels, each of its own level; `scale`: texels a voxel there. `nested`: levels begin elsewhere than at
+/// 0.
+template <bool nested, class D, class I, class V = hn::Vec<D>>
+HWY_INLINE FirstTexels<I> place_levels(D d, const LevelTable& table, I level, V scale, const Lanes3<V>& at, Taps& taps) {
     const hn::RebindToSigned<D> di;
     const V half = hn::Set(d, 0.5f);
     const auto place = [&](V q, const float* origins, float* fractions) HWY_ATTR {
-        const V origin = hn::Add(hn::GatherIndex(d, origins, level), half), texels = hn::MulSub(q, scale, origin);
+        V texels = hn::MulSub(q, scale, half);
+        if constexpr (nested) texels = hn::Sub(texels, entry(d, origins, level));
         const V first = hn::Floor(texels);
         hn::Store(hn::Sub(texels, first), d, fractions);
         return hn::ConvertTo(di, first);
     };
     const auto ix = place(at.x, table.origin_x, taps.fx), iy = place(at.y, table.origin_y, taps.fy),
                iz = place(at.z, table.origin_z, taps.fz);
-    const auto rows = hn::Mul(iy, hn::GatherIndex(di, table.row, level)),
-               slices = hn::Mul(iz, hn::GatherIndex(di, table.slice, level));
+    const auto rows = hn::Mul(iy, entry(di, table.row, level)), slices = hn::Mul(iz, entry(di, table.slice, level));
     hn::Store(hn::Add(hn::Add(hn::ShiftLeft<2>(ix), rows), slices), di, taps.offset);
+    return {ix, iy, iz};
+}
+
+/// Which taps may read something else than air.
+template <class D, class I>
+HWY_INLINE hn::Mask<D> may_see(D d, const LevelTable& table, I level, const FirstTexels<I>& at) {
+    const hn::RebindToSigned<D> di;
+    const auto one = hn::Set(di, 1), x = hn::Add(at.x, one), y = hn::Add(at.y, one), z = hn::Add(at.z, one);
+    auto air = hn::FirstN(di, 0);
+    for (int k = AirMap::first_level; k <= std::min(AirMap::last_level, table.last); ++k) {
+        const AirMap::Level* map = table.views[k].air;
+        const auto here = hn::Eq(level, hn::Set(di, k));
+        if (map == nullptr || hn::AllFalse(di, here)) continue;
+        const auto words = [&](std::uint32_t count) HWY_ATTR { return hn::Set(di, static_cast<int>(count)); };
+        const auto word =
+            hn::Add(hn::Add(hn::ShiftRight<5>(x), hn::Mul(y, words(map->row_words))), hn::Mul(z, words(map->slice_words)));
+        const auto bits =
+            hn::GatherIndex(di, reinterpret_cast<const int32_t*>(map->words.data()), hn::IfThenElseZero(here, word));
+        const auto bit = hn::Shl(one, hn::And(x, hn::Set(di, 31)));
+        air = hn::Or(air, hn::And(here, hn::Eq(hn::And(bits, bit), hn::Zero(di))));
+    }
+    return hn::RebindMask(d, hn::Not(air));
 }
 
 /// What a step of a vector of cones sees.
@@ -131,13 +170,14 @@ ConeCounts march_vector(const Map& map, const LevelTable& table, const ConeSched
         active = hn::And(active, hn::And(hn::Lt(hn::Sub(distance, reach), exit), hn::Lt(hn::Add(distance, reach), limit)));
         if (hn::AllFalse(d, active)) break;
         counts.steps += static_cast<std::uint64_t>(hn::CountTrue(d, active));
-        const auto seeing = hn::And(active, at.inside);
-        if (hn::AllFalse(d, seeing)) continue;
-
         const auto level = hn::ConvertTo(di, whole), last = hn::Set(di, table.last);
         const V texels = exp2_of(d, hn::Neg(whole)), next_texels = hn::Mul(texels, hn::Set(d, 0.5f));
-        place_levels(d, table, level, texels, at.voxels, sight.fine);
-        place_levels(d, table, hn::Min(hn::Add(level, hn::Set(di, 1)), last), next_texels, at.voxels, sight.coarse);
+        const auto next = hn::Min(hn::Add(level, hn::Set(di, 1)), last);
+        // What is air to a coarser tap is air to the finer ones within it.
+        const auto first_texels = place_levels<Map::nested>(d, table, next, next_texels, at.voxels, sight.coarse);
+        const auto seeing = hn::And(hn::And(active, at.inside), may_see(d, table, next, first_texels));
+        if (hn::AllFalse(d, seeing)) continue;
+        place_levels<Map::nested>(d, table, level, texels, at.voxels, sight.fine);
         hn::Store(level, di, sight.level);
         hn::Store(blend, d, sight.blend);
         const Lanes3<V>& seen_along = harmonics ? direction : at.toward;
@@ -225,14 +265,27 @@ ConeCounts march_warped(const Pyramid& pyramid, const AirMap& air, const ConeSch
 
 void set_warped_start(ConeBatch& batch, int i, const Domain& domain, const vec3& surface, const vec3& normal, float offset,
                       bool see_own_surface) {
-    // Nested grids are marched in linear voxels of the finest one, by a coarseness without jumps.
-    const bool nested = domain.cascades > 1;
-    const mat3 density = nested ? mat3(std::exp2(-domain.grid_level(surface))) : domain.density(surface);
-    const vec3 start = surface + normal * (offset / glm::length(density * normal));
-    const vec3 on_surface = nested ? surface : domain.place(surface).voxels;
-    const vec3 facing = glm::normalize(glm::transpose(glm::inverse(density)) * normal);
+    vec3 facing, on_surface = surface;
+    float stretch, volume;  // voxels along the normal, and voxels in a linear one
+    if (domain.warp.view_volume()) {
+        const mat3 density = domain.density(surface);
+        on_surface = domain.place(surface).voxels;
+        facing = glm::normalize(glm::transpose(glm::inverse(density)) * normal);
+        stretch = glm::length(density * normal), volume = std::fabs(glm::determinant(density));
+    } else {
+        // Nested grids are marched in linear voxels of the finest one, by a coarseness without jumps.
+        auto [voxels, slopes] = domain.warp.slopes_at(surface, domain.cells);
+        if (domain.cascades > 1)
+            slopes = vec3(std::exp2(-domain.grid_level(surface)));
+        else
+            on_surface = voxels;
+        slopes = glm::max(slopes, vec3(1e-3f));  // as in the march
+        facing = glm::normalize(normal / slopes);
+        stretch = glm::length(slopes * normal), volume = slopes.x * slopes.y * slopes.z;
+    }
+    const vec3 start = surface + normal * (offset / stretch);
     batch.x[i] = start.x, batch.y[i] = start.y, batch.z[i] = start.z;
-    batch.scale[i] = 1.0f / std::cbrt(std::fabs(glm::determinant(density)));
+    batch.scale[i] = 1.0f / std::cbrt(volume);
     set_plane(batch, i, domain, on_surface, facing, see_own_surface);
     // View volumes bend planes: only separable warps leave one along an axis where it is.
     if (domain.warp.view_volume()) batch.aligned[i] = 0.0f;

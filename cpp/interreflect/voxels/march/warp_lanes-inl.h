@@ -92,6 +92,7 @@ struct LogisticCurve {
 template <class Curve>
 class SeparableLanes {
   public:
+    static constexpr bool nested = false;
     explicit SeparableLanes(const Domain& domain) : size_(domain.cells), steepness_(domain.warp.steepness) {
         centre_ = domain.warp.centre;
         for (int axis = 0; axis < 3; ++axis) {
@@ -137,6 +138,7 @@ class SeparableLanes {
 /// What both view volumes do: space outside of them is unknown, and lets everything through.
 class ViewLanes {
   public:
+    static constexpr bool nested = false;
     explicit ViewLanes(const Domain& domain) : warp_(domain.warp), size_(domain.cells), end_(2.0f * domain.view_radius()) {}
     template <class D, class V = hn::Vec<D>>
     HWY_INLINE V exit(D d, const Lanes3<V>&, const Lanes3<V>&) const {
@@ -227,6 +229,7 @@ class SphericalLanes : public ViewLanes {
 /// Nested grids: the voxels stay linear, but the finest level depends on the place.
 class NestedLanes {
   public:
+    static constexpr bool nested = true;
     explicit NestedLanes(const Domain& domain)
         : size_(vec3(domain.cells) * static_cast<float>(1 << (domain.cascades - 1))), count_(domain.cascades - 1) {
         for (int k = 0; k < count_; ++k) {
