@@ -249,6 +249,64 @@ ConeCounts march_by_kind(const Pyramid& pyramid, const AirMap& air, const ConeSc
     }
 }
 
+/// set_warped_start for a vector of receivers in a grid whose axes the warp leaves where they are.
+template <class Map, class D, class V = hn::Vec<D>>
+HWY_INLINE void start_vector(D d, const Map& map, const Domain& domain, const Lanes3<V>& surface, const Lanes3<V>& normal,
+                             float normal_offset, bool see_own_surface, int i, ConeBatch& batch) {
+    const V one = hn::Set(d, 1.0f);
+    Lanes3<V> s;
+    const Lanes3<V> at = map.place(d, surface, s);
+    const Lanes3<V> steep{hn::Mul(normal.x, s.x), hn::Mul(normal.y, s.y), hn::Mul(normal.z, s.z)};
+    const Lanes3<V> flat{hn::Div(normal.x, s.x), hn::Div(normal.y, s.y), hn::Div(normal.z, s.z)};
+    const V offset = hn::Div(hn::Set(d, normal_offset), hn::Sqrt(dot(steep, steep))),
+            unit = hn::Div(one, hn::Sqrt(dot(flat, flat)));
+    const Lanes3<V> facing{hn::Mul(flat.x, unit), hn::Mul(flat.y, unit), hn::Mul(flat.z, unit)};
+    const Lanes3<V> size{hn::Abs(facing.x), hn::Abs(facing.y), hn::Abs(facing.z)};
+    const auto is_x = hn::And(hn::Ge(size.x, size.y), hn::Ge(size.x, size.z)), is_y = hn::Ge(size.y, size.z);
+    const auto longest = [&](V x, V y, V z) HWY_ATTR { return hn::IfThenElse(is_x, x, hn::IfThenElse(is_y, y, z)); };
+    const auto cells = [&](int axis)
+                           HWY_ATTR { return hn::Set(d, static_cast<float>(domain.cells[axis] << (domain.cascades - 1))); };
+    hn::Store(hn::MulAdd(normal.x, offset, surface.x), d, batch.x + i);
+    hn::Store(hn::MulAdd(normal.y, offset, surface.y), d, batch.y + i);
+    hn::Store(hn::MulAdd(normal.z, offset, surface.z), d, batch.z + i);
+    hn::Store(exp2_of(d, hn::Mul(log2_of(d, hn::Mul(hn::Mul(s.x, s.y), s.z)), hn::Set(d, -1.0f / 3.0f))), d, batch.scale + i);
+    hn::Store(facing.x, d, batch.nx + i);
+    hn::Store(facing.y, d, batch.ny + i);
+    hn::Store(facing.z, d, batch.nz + i);
+    hn::Store(hn::Neg(dot(facing, at)), d, batch.height + i);
+    hn::Store(see_own_surface ? hn::Zero(d) : hn::Add(hn::Add(size.x, size.y), size.z), d, batch.width + i);
+    hn::Store(longest(hn::Zero(d), one, hn::Add(one, one)), d, batch.axis + i);
+    hn::Store(longest(at.x, at.y, at.z), d, batch.axis_plane + i);
+    hn::Store(longest(cells(0), cells(1), cells(2)), d, batch.axis_cells + i);
+    const V most = longest(size.x, size.y, size.z);
+    hn::Store(hn::IfThenElseZero(hn::Gt(most, hn::Set(d, aligned_cosine)), one), d, batch.aligned + i);
+}
+
+template <class Map>
+void start_all(const Map& map, const Domain& domain, float normal_offset, bool see_own_surface, const Receivers& receivers,
+               ConeBatch& batch) {
+    const hn::ScalableTag<float> d;
+    using V = hn::Vec<decltype(d)>;
+    const V scale = hn::Set(d, 1.0f / domain.voxel_size);
+    for (int i = 0; i < receivers.count; i += static_cast<int>(hn::Lanes(d))) {
+        const auto linear = [&](int axis) HWY_ATTR {
+            return hn::Mul(hn::Sub(hn::Load(d, receivers.position[axis] + i), hn::Set(d, domain.lower[axis])), scale);
+        };
+        const Lanes3<V> normal{hn::Load(d, receivers.facing[0] + i), hn::Load(d, receivers.facing[1] + i),
+                               hn::Load(d, receivers.facing[2] + i)};
+        start_vector(d, map, domain, Lanes3<V>{linear(0), linear(1), linear(2)}, normal, normal_offset, see_own_surface, i,
+                     batch);
+    }
+}
+
+void start_by_kind(const Domain& domain, float normal_offset, bool see_own_surface, const Receivers& receivers,
+                   ConeBatch& batch) {
+    const auto start = [&](const auto& map) { start_all(map, domain, normal_offset, see_own_surface, receivers, batch); };
+    if (domain.cascades > 1) return start(NestedLanes(domain));
+    if (domain.warp.kind == Warp::Kind::logistic) return start(SeparableLanes<LogisticCurve>(domain));
+    start(SeparableLanes<CubicCurve>(domain));
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace interreflect
 HWY_AFTER_NAMESPACE();
@@ -257,6 +315,18 @@ HWY_AFTER_NAMESPACE();
 namespace interreflect {
 
 HWY_EXPORT(march_by_kind);
+HWY_EXPORT(start_by_kind);
+
+void start_warped(const Domain& domain, float normal_offset, bool see_own_surface, const Receivers& receivers, ConeBatch& batch) {
+    batch.count = receivers.count;
+    if (!domain.warp.view_volume())
+        return HWY_DYNAMIC_DISPATCH(start_by_kind)(domain, normal_offset, see_own_surface, receivers, batch);
+    for (int i = 0; i < receivers.count; ++i) {
+        const vec3 position(receivers.position[0][i], receivers.position[1][i], receivers.position[2][i]);
+        const vec3 facing(receivers.facing[0][i], receivers.facing[1][i], receivers.facing[2][i]);
+        set_warped_start(batch, i, domain, domain.to_linear(position), facing, normal_offset, see_own_surface);
+    }
+}
 
 ConeCounts march_warped(const Pyramid& pyramid, const AirMap& air, const ConeSchedule& schedule, float cut_off,
                         ConeBatch& batch) {

@@ -1,5 +1,7 @@
 #include "voxels/march/receivers.h"
 
+#include "voxels/march/march_warped.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "voxels/march/receivers.cpp"
 #include <hwy/foreach_target.h>
@@ -108,12 +110,7 @@ HWY_EXPORT(start_lanes);
 
 void start_receivers(const Domain& domain, float normal_offset, bool see_own_surface, Receivers& receivers, ConeBatch& batch) {
     HWY_DYNAMIC_DISPATCH(start_lanes)(domain, normal_offset, see_own_surface, receivers, batch);
-    if (domain.plain()) return;
-    for (int i = 0; i < receivers.count; ++i) {
-        const vec3 position(receivers.position[0][i], receivers.position[1][i], receivers.position[2][i]);
-        const vec3 facing(receivers.facing[0][i], receivers.facing[1][i], receivers.facing[2][i]);
-        set_warped_start(batch, i, domain, domain.to_linear(position), facing, normal_offset, see_own_surface);
-    }
+    if (!domain.plain()) start_warped(domain, normal_offset, see_own_surface, receivers, batch);
 }
 
 }  // namespace interreflect

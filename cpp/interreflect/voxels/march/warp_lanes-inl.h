@@ -107,15 +107,20 @@ class SeparableLanes {
     }
     template <class D, class V = hn::Vec<D>>
     HWY_INLINE LanesAt<D> at(D d, const Lanes3<V>& start, const Lanes3<V>& direction, V distance) const {
-        const Lanes3<V> p = along(d, start, direction, distance);
         LanesAt<D> at;
-        V sx, sy, sz;
-        at.voxels = {curve(d, 0, p.x, sx), curve(d, 1, p.y, sy), curve(d, 2, p.z, sz)};
-        set_way(d, Lanes3<V>{hn::Mul(direction.x, sx), hn::Mul(direction.y, sy), hn::Mul(direction.z, sz)}, at);
-        at.density = density_across(d, hn::Mul(hn::Mul(sx, sy), sz), at.stretch);
+        Lanes3<V> s;
+        at.voxels = place(d, along(d, start, direction, distance), s);
+        set_way(d, Lanes3<V>{hn::Mul(direction.x, s.x), hn::Mul(direction.y, s.y), hn::Mul(direction.z, s.z)}, at);
+        at.density = density_across(d, hn::Mul(hn::Mul(s.x, s.y), s.z), at.stretch);
         at.least_level = hn::Zero(d);
         at.inside = hn::Eq(distance, distance);
         return at;
+    }
+
+    /// Voxels at p, and how many lie along a linear one on each axis.
+    template <class D, class V = hn::Vec<D>>
+    HWY_INLINE Lanes3<V> place(D d, const Lanes3<V>& p, Lanes3<V>& slopes) const {
+        return {curve(d, 0, p.x, slopes.x), curve(d, 1, p.y, slopes.y), curve(d, 2, p.z, slopes.z)};
     }
 
   private:
@@ -250,20 +255,32 @@ class NestedLanes {
         at.toward = direction;
         at.stretch = at.density = hn::Set(d, 1.0f);
         at.inside = hn::Eq(distance, distance);
-        at.least_level = hn::Zero(d);
-        const V one = hn::Set(d, 1.0f);
-        for (int k = 0; k < count_; ++k) {  // Domain::grid_level
-            const auto depth = [&](V q, int axis) HWY_ATTR {
-                return hn::Min(hn::Sub(q, hn::Set(d, lower_[k][axis])), hn::Sub(hn::Set(d, upper_[k][axis]), q));
-            };
-            const V deep = hn::Min(hn::Min(depth(at.voxels.x, 0), depth(at.voxels.y, 1)), depth(at.voxels.z, 2));
-            const V left = hn::Mul(hn::Sub(deep, hn::Set(d, band_[k].x)), hn::Set(d, band_[k].y));
-            at.least_level = hn::Add(at.least_level, hn::Min(hn::Max(hn::Sub(one, left), hn::Zero(d)), one));
-        }
+        at.least_level = grid_level(d, at.voxels);
         return at;
+    }
+    template <class D, class V = hn::Vec<D>>
+    HWY_INLINE Lanes3<V> place(D d, const Lanes3<V>& p, Lanes3<V>& slopes) const {
+        slopes.x = slopes.y = slopes.z = exp2_of(d, hn::Neg(grid_level(d, p)));
+        return p;
     }
 
   private:
+    /// Domain::grid_level.
+    template <class D, class V = hn::Vec<D>>
+    HWY_INLINE V grid_level(D d, const Lanes3<V>& p) const {
+        const V one = hn::Set(d, 1.0f), zero = hn::Zero(d);
+        V level = zero;
+        for (int k = 0; k < count_; ++k) {
+            const auto depth = [&](V q, int axis) HWY_ATTR {
+                return hn::Min(hn::Sub(q, hn::Set(d, lower_[k][axis])), hn::Sub(hn::Set(d, upper_[k][axis]), q));
+            };
+            const V deep = hn::Min(hn::Min(depth(p.x, 0), depth(p.y, 1)), depth(p.z, 2));
+            const V left = hn::Mul(hn::Sub(deep, hn::Set(d, band_[k].x)), hn::Set(d, band_[k].y));
+            level = hn::Add(level, hn::Min(hn::Max(hn::Sub(one, left), zero), one));
+        }
+        return level;
+    }
+
     vec3 size_, lower_[Domain::most_cascades], upper_[Domain::most_cascades];
     vec2 band_[Domain::most_cascades];
     int count_;
