@@ -63,3 +63,28 @@ def around_cones(c: Calibration, pixels: int, samples: float, voxels: float) -> 
 def voxel_frame(c: Calibration, pixels: int, steps: float, samples: float, voxels: float) -> float:
     """Cones, and all that is around them."""
     return around_cones(c, pixels, samples, voxels) + cone_march(c, steps)
+
+
+VOXEL_BYTES = 4 + 5 * 12 + 4 + 2 * 32  # a voxel: its cell, four vectors and its point, opacity and area, points of both sides
+
+
+def voxelize(c: Calibration, vertices: int, triangles: int, samples: float, voxels: float) -> float:
+    """Vertices (with texture coordinates) and indices are read once, voxels written once; a triangle takes three corners to the grid
+    and a normal (40 operations), a sample its place and its part of the sums (20)."""
+    return max(move(c, 20 * vertices + 12 * triangles + VOXEL_BYTES * voxels), compute(c, 40 * triangles + 20 * samples))
+
+
+def light_map(c: Calibration, texels: float) -> float:
+    """One ray a texel, side by side, while the depths stream out."""
+    return max(trace(c, "sun shadow", texels), move(c, 4 * texels))
+
+
+def inject(c: Calibration, texels: float, voxels: float) -> float:
+    """Each texel's hit goes to its cells (30 operations); of each voxel its cell, point, albedo and 3 x 3 texels are read and its
+    radiance written (130 operations)."""
+    return max(move(c, 4 * texels + (4 + 32 + 12 + 12) * voxels), compute(c, 30 * texels + 130 * voxels))
+
+
+def prefilter(c: Calibration, resolution: int, voxels: float) -> float:
+    """Four halves a texel, written once, at all levels; of each voxel cell and radiance are read."""
+    return move(c, 8 * resolution**3 * 8 / 7 + 16 * voxels)

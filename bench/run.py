@@ -10,7 +10,7 @@ import time
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-SUITES = ("core",)
+SUITES = ("core", "voxels")
 
 
 def main(suite: str) -> None:
