@@ -44,6 +44,7 @@ std::shared_ptr<const VoxelGrid> part_of(const VoxelGrid& grid, std::span<const 
     part->emission = chosen_of(grid.emission, chosen);
     part->position = chosen_of(grid.position, chosen);
     part->opacity = chosen_of(grid.opacity, chosen);
+    part->area = chosen_of(grid.area, chosen);
     part->points = chosen_of(grid.points, chosen);
     part->backs = chosen_of(grid.backs, chosen);
     return part;

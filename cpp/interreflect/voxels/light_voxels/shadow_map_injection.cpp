@@ -18,17 +18,32 @@ class CellBits {
   public:
     explicit CellBits(const Domain& domain) : domain_(domain), words_((domain.cell_count() + 31) / 32) {}
 
-    void set(const vec3& position) {
-        std::uint32_t cell = 0;
-        if (!domain_.locate(position, cell)) return;
-        const std::uint32_t bit = 1U << (cell & 31U);
-        std::atomic<std::uint32_t>& word = words_[cell >> 5U];
-        if ((word.load(std::memory_order_relaxed) & bit) == 0) word.fetch_or(bit, std::memory_order_relaxed);
+    /// The cells just before and just behind a hit of a ray: rounding may have put it across a voxel's face.
+    void set_around(const vec3& hit, const vec3& nudge) {
+        std::uint32_t before = 0, behind = 0;
+        const bool inside = find(hit - nudge, before), still = find(hit + nudge, behind);
+        if (inside) set(before);
+        if (still && !(inside && before == behind)) set(behind);
     }
     bool has(std::uint32_t cell) const { return (words_[cell >> 5U].load(std::memory_order_relaxed) >> (cell & 31U) & 1U) != 0; }
 
   private:
+    /// Domain::locate, without its call where there is nothing to warp: hundreds of thousands of texels ask.
+    bool find(const vec3& position, std::uint32_t& cell) const {
+        if (!plain_) return domain_.locate(position, cell);
+        const vec3 voxels = domain_.to_linear(position);
+        if (!domain_.inside(voxels)) return false;
+        cell = domain_.cell(ivec3(voxels));
+        return true;
+    }
+    void set(std::uint32_t cell) {
+        const std::uint32_t bit = 1U << (cell & 31U);
+        std::atomic<std::uint32_t>& word = words_[cell >> 5U];
+        if ((word.load(std::memory_order_relaxed) & bit) == 0) word.fetch_or(bit, std::memory_order_relaxed);
+    }
+
     const Domain& domain_;
+    bool plain_ = domain_.plain();
     std::vector<std::atomic<std::uint32_t>> words_;
 };
 
@@ -42,9 +57,7 @@ void mark(const DepthMap& map, const Domain& domain, CellBits& cells) {
                 const float depth = map.depth[y * static_cast<std::size_t>(view.size) + static_cast<std::size_t>(x)];
                 if (!std::isfinite(depth)) continue;
                 const Ray ray = view.ray(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
-                const vec3 hit = ray.origin + ray.direction * depth;
-                cells.set(hit - ray.direction * nudge);
-                cells.set(hit + ray.direction * nudge);
+                cells.set_around(ray.origin + ray.direction * depth, ray.direction * nudge);
             }
     });
 }

@@ -6,7 +6,6 @@
 #include <span>
 
 #include "math/parallel.h"
-#include "voxels/voxelize/triangle_pieces.h"
 
 namespace interreflect {
 namespace {
@@ -197,7 +196,8 @@ void CellMarks::number() {
     first_.back() = sum;
 }
 
-VoxelGrid voxelize_triangles(const Scene& scene, const Domain& domain, Handing handing, const EmitTriangle& emit, Blend blend) {
+VoxelGrid voxelize_triangles(const Scene& scene, const Domain& domain, Handing handing, const EmitTriangle& emit, Blend blend,
+                             const PassOver& pass_over) {
     const auto ranges = triangle_ranges(*scene.geometry);
     const Buckets buckets(domain.cell_count());
     CellMarks marks(domain.cell_count());
@@ -208,11 +208,12 @@ VoxelGrid voxelize_triangles(const Scene& scene, const Domain& domain, Handing h
     parallel_pieces(ranges.size(), [&](std::size_t i) {
         Worker& worker = workers.local();
         worker.sink.clear();
-        for_each_triangle(scene, domain, handing, ranges[i], [&](const VoxelTriangle& triangle) {
+        const auto visit = [&](const VoxelTriangle& triangle) {
             worker.sink.begin(triangle);
             emit(triangle, worker.sink);
             worker.sink.end();
-        });
+        };
+        for_each_triangle(scene, domain, handing, ranges[i], visit, pass_over);
         pieces.surface[i] = worker.surface.keep(worker.sink.surface, buckets);
         pieces.emission[i] = worker.emission.keep(worker.sink.emission, buckets);
         worker.samples += worker.sink.samples;

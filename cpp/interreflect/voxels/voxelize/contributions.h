@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "voxels/voxelize/contribution_sink.h"
+#include "voxels/voxelize/triangle_pieces.h"
 
 namespace interreflect {
 
@@ -16,6 +17,6 @@ enum class Blend { mean, max };
 /// Calls `emit` for every triangle of the scene and merges what it adds to the sink.
 using EmitTriangle = std::function<void(const VoxelTriangle&, ContributionSink&)>;
 VoxelGrid voxelize_triangles(const Scene& scene, const Domain& domain, Handing handing, const EmitTriangle& emit,
-                             Blend blend = Blend::mean);
+                             Blend blend = Blend::mean, const PassOver& pass_over = {});
 
 }  // namespace interreflect

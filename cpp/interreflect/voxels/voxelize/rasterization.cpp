@@ -107,6 +107,34 @@ class Fragments {
     ContributionSink& sink_;
 };
 
+/// Whether the box around a triangle, seen along its dominant axis, holds no sample of any pixel: so it is with most triangles
+/// where voxels are large.
+class Unseen {
+  public:
+    Unseen(std::span<const vec2> samples, int oversampling) : samples_(samples), scale_(static_cast<float>(oversampling)) {}
+
+    bool operator()(const vec3* corner, const vec3& cross) const {
+        const vec3 n = glm::abs(cross);
+        const int depth_axis = n.x >= n.y && n.x >= n.z ? 0 : n.y >= n.z ? 1 : 2;
+        const int u = (depth_axis + 1) % 3, v = (depth_axis + 2) % 3;
+        // Two axes alike: rounding decides elsewhere.
+        if (std::max(n[u], n[v]) > (1.0f - 1e-5f) * n[depth_axis]) return false;
+        const vec3 lowest = glm::min(glm::min(corner[0], corner[1]), corner[2]) * scale_ - slack;
+        const vec3 highest = glm::max(glm::max(corner[0], corner[1]), corner[2]) * scale_ + slack;
+        for (const vec2& sample : samples_)
+            if (holds(lowest[u] - sample.x, highest[u] - sample.x) && holds(lowest[v] - sample.y, highest[v] - sample.y))
+                return false;
+        return true;
+    }
+
+  private:
+    static constexpr float slack = 1e-3f;  // pixels: far more than an edge's crossings are rounded by
+    static bool holds(float lowest, float highest) { return std::ceil(lowest) <= highest; }  // an integer
+
+    std::span<const vec2> samples_;
+    float scale_;
+};
+
 void rasterize(const VoxelTriangle& t, const LinearBox& box, int oversampling, std::span<const vec2> samples,
                ContributionSink& sink) {
     const Projected p(t, box, oversampling);
@@ -139,7 +167,7 @@ VoxelGrid voxelize(const Rasterization& technique, const Scene& scene, const Dom
             else
                 rasterize(triangle, box, technique.oversampling, samples, sink);
         },
-        blend);
+        blend, full ? PassOver() : PassOver(Unseen(samples, technique.oversampling)));
 }
 
 }  // namespace interreflect

@@ -41,8 +41,13 @@ class Tessellator {
         const auto longest = static_cast<int>(std::max_element(length.begin(), length.end()) - length.begin());
         const float altitude = 2.0f * patch.area / *std::min_element(length.begin(), length.end());
         refuse_longer_than_most_voxels(length[longest]);
-        if (split_ && must_split(patch, length[longest])) {
+        const bool thin = split_ && 2.0f * patch.area <= spacing_ * length[longest] && length[longest] > spacing_;
+        if (split_ && must_split(patch, length[longest], thin)) {
             halve(patch, longest);
+            return;
+        }
+        if (thin && !in_one_cell(patch)) {
+            emit_edges(patch, longest, length);
             return;
         }
         TessellationLevels levels;
@@ -60,8 +65,9 @@ class Tessellator {
     int level(float length) const {
         return static_cast<int>(std::clamp(std::ceil(length / spacing_), 1.0f, static_cast<float>(most_)));
     }
-    bool must_split(const Patch& patch, float longest) const {
+    bool must_split(const Patch& patch, float longest, bool thin) const {
         if (std::ceil(longest / spacing_) > static_cast<float>(most_)) return true;
+        if (thin) return false;
         // The vertices inside, (3/4) (altitude / spacing)^2 of them, lie in rows as long as the longest edge: too many where a
         // triangle is narrow, and too far apart where it is obtuse.
         const float narrowest = 2.0f * patch.area / longest;
@@ -79,9 +85,47 @@ class Tessellator {
         tessellate(half(edge));
         tessellate(half(next));
     }
-    void emit(const Patch& patch, const TessellationLevels& levels) {
+    static bool in_one_cell(const Patch& patch) {
         const vec3 cell = glm::floor(patch.corner[0]);
-        if (cell == glm::floor(patch.corner[1]) && cell == glm::floor(patch.corner[2])) {
+        return cell == glm::floor(patch.corner[1]) && cell == glm::floor(patch.corner[2]);
+    }
+    /// A triangle no wider than the spacing: the vertices of its edges alone. Along the longest edge, and along the other two,
+    /// each stands for half of the area between the middles to its neighbours.
+    void emit_edges(const Patch& patch, int longest, const std::array<float, 3>& length) {
+        const int a = longest, b = (longest + 1) % 3, c = (longest + 2) % 3;
+        const vec3 base = patch.corner[b] - patch.corner[a];
+        const float foot = std::clamp(glm::dot(patch.corner[c] - patch.corner[a], base) / glm::dot(base, base), 1e-3f, 0.999f);
+        const auto area_before = [foot](float x) {
+            return x < foot ? x * x / foot : 1.0f - (1.0f - x) * (1.0f - x) / (1.0f - foot);
+        };
+        vec3 pending(0);
+        float place = 0.0f, before = 0.0f;
+        const auto next = [&](const vec3& weights, float x) {
+            const float to = std::max(before, area_before(std::min(0.5f * (place + x), 1.0f)));
+            add(patch, pending, 0.5f * (to - before) * patch.area);
+            pending = weights, place = x, before = to;
+        };
+        const auto walk = [&](int from, int to, float begin, float end, int parts) {
+            for (int j = 1; j <= parts; ++j) {
+                const float t = static_cast<float>(j) / static_cast<float>(parts);
+                vec3 weights(0);
+                weights[from] = 1.0f - t, weights[to] = t;
+                next(weights, begin + (end - begin) * t);
+            }
+        };
+        const auto chain = [&](const auto& edges) {
+            pending = vec3(0), pending[a] = 1.0f, place = before = 0.0f;
+            edges();
+            add(patch, pending, 0.5f * (1.0f - before) * patch.area);
+        };
+        chain([&] { walk(a, b, 0.0f, 1.0f, level(length[a])); });
+        chain([&] {
+            walk(a, c, 0.0f, foot, level(length[c]));
+            walk(c, b, foot, 1.0f, level(length[b]));
+        });
+    }
+    void emit(const Patch& patch, const TessellationLevels& levels) {
+        if (in_one_cell(patch)) {
             add(patch, vec3(1.0f / 3.0f), patch.area);
             return;
         }

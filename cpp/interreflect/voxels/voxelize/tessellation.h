@@ -15,7 +15,7 @@ namespace interreflect {
 ///
 /// Splitting cuts the longest edge in half where it needs too high a level, and where the triangle is longer than 2.5 times its
 /// width: the altitude says little about the distance of the rows of vertices in a narrow triangle, nor in an obtuse one of those
-/// in a row.
+/// in a row. A triangle no wider than the spacing is not split for that: the vertices of its edges are enough.
 struct Tessellation {
     double spacing = 0.5;
     int max_level = 64;

@@ -191,13 +191,15 @@ class Pieces {
     VoxelTriangle piece_;
 };
 
-/// Corners as linear voxels, and the box around them. False for a triangle without area.
-bool make_whole(const Scene& scene, const Domain& domain, std::uint32_t instance, std::uint32_t triangle, VoxelTriangle& made) {
+/// Corners as linear voxels. False for a triangle without area, or to be passed over.
+bool make_whole(const Scene& scene, const Domain& domain, std::uint32_t instance, std::uint32_t triangle,
+                const PassOver& pass_over, VoxelTriangle& made) {
     const Corners world = world_corners(*scene.geometry, instance, triangle);
     made.corner[0] = domain.to_linear(world.a);
     made.corner[1] = domain.to_linear(world.b);
     made.corner[2] = domain.to_linear(world.c);
     const vec3 cross = glm::cross(made.corner[1] - made.corner[0], made.corner[2] - made.corner[0]);
+    if (pass_over && domain.cascades == 1 && pass_over(made.corner, cross)) return false;
     const float length = glm::length(cross);
     if (!(length > 0.0f)) return false;
     made.normal = cross * (1.0f / (scene.geometry->instances[instance].flips ? -length : length));
@@ -273,11 +275,11 @@ int VoxelTriangle::level(const Texture& texture, float sample_area) const {
 }
 
 void for_each_triangle(const Scene& scene, const Domain& domain, Handing handing, const TriangleRange& range,
-                       const VisitTriangle& visit) {
+                       const VisitTriangle& visit, const PassOver& pass_over) {
     VoxelTriangle triangle;
     const bool plain = domain.plain();
     for (std::uint32_t t = range.begin; t < range.end; ++t) {
-        if (!make_whole(scene, domain, range.instance, t, triangle)) continue;
+        if (!make_whole(scene, domain, range.instance, t, pass_over, triangle)) continue;
         if (plain && !meets_box(vec3(domain.cells), triangle)) continue;
         add_surface(scene, t, triangle);
         if (plain)
