@@ -85,6 +85,11 @@ def inject(c: Calibration, texels: float, voxels: float) -> float:
     return max(move(c, 4 * texels + (4 + 32 + 12 + 12) * voxels), compute(c, 30 * texels + 130 * voxels))
 
 
-def prefilter(c: Calibration, resolution: int, voxels: float) -> float:
-    """Four halves a texel, written once, at all levels; of each voxel cell and radiance are read."""
-    return move(c, 8 * resolution**3 * 8 / 7 + 16 * voxels)
+def trace_lights(c: Calibration, rays: float, voxels: float) -> float:
+    """Each voxel asks the lights by rays; its cell, point and albedo are read and its radiance written."""
+    return max(trace(c, "occlusion", rays), move(c, (4 + 32 + 12 + 12) * voxels))
+
+
+def prefilter(c: Calibration, texels_bytes: float, voxels: float) -> float:
+    """All levels written once; of each voxel cell and radiance are read."""
+    return move(c, texels_bytes + 16 * voxels)

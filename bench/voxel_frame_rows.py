@@ -39,11 +39,11 @@ def frame(calibration: Calibration, sponza: Sponza, scene: ir.Scene, k: int) -> 
     profiles: list[Any] = [prepared.render("nave", size=SIZE).profile for _ in range(1 + REPEATS)][1:]
     fastest = min(profiles, key=lambda profile: profile.milliseconds)
     counts = {name: stage.counts for name, stage in fastest.stages.items()}
-    voxels, texels = counts["voxelize"]["voxels"], counts["light_voxels"]["rays"]
+    voxels, texels_bytes = counts["voxelize"]["voxels"], fastest.stages["prefilter"].bytes
 
     def around(c: Calibration) -> float:
         voxelizing = limits.voxelize(c, sponza.vertices, sponza.triangles, counts["voxelize"]["samples"], voxels)
-        lighting = limits.light_map(c, texels) + limits.inject(c, texels, voxels) + limits.prefilter(c, RESOLUTIONS[k], voxels)
+        lighting = limits.trace_lights(c, counts["light_voxels"]["shadow_rays"], voxels) + limits.prefilter(c, texels_bytes, voxels)
         return limits.gbuffer(c, sponza.pixels) + limits.sun_shadows(c, sponza.pixels) + voxelizing + lighting
 
     def limit(c: Calibration) -> float:

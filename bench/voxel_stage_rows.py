@@ -14,10 +14,18 @@ from bench.voxel_pipeline import INTERLEAVED, RESOLUTIONS, Limit, bounded, cones
 from interreflect import stages
 
 REPEATS = 9
+REPEATS_OF_LIGHT = 25  # injection is a small difference of two
+SPACING = 0.7  # of tessellated vertices, voxels: the widest that left no holes
 GLOSSY = "sponza_crytek/glossy.toml"
 SOFTWARE, PROTOTYPE = "software OpenGL, older machine", "prototype, machine of the targets"
-RASTERIZE, TESSELLATE, MAP, INJECT = "voxelize, rasterized, 4 samples", "voxelize, tessellated", "light for injection", "injection"
-FILTER, CONES, EVERY = "filtering", "diffuse cones, interleaved 2 x 2", "diffuse cones, all six at every pixel"
+RASTERIZE, TESSELLATE, MAP, INJECT = (
+    "voxelize, rasterized, 4 samples",
+    "voxelize, tessellated",
+    "light for injection, shadow map",
+    "injection",
+)
+TRACED = "light and injection, traced"
+FILTER, CONES, EVERY = "filtering, isotropic", "diffuse cones, interleaved 2 x 2", "diffuse cones, all six at every pixel"
 GLOSSY_CONE = "glossy cone of 5 degrees, interleaved 2 x 2"
 # Milliseconds at 64^3, 128^3 and 256^3: the target, and what a peer needs.
 TARGETS: dict[str, tuple[tuple[float, float, float], tuple[str, tuple[float, float, float]] | None]] = {
@@ -25,6 +33,7 @@ TARGETS: dict[str, tuple[tuple[float, float, float], tuple[str, tuple[float, flo
     TESSELLATE: ((8, 15, 60), (SOFTWARE + ", with holes", (125, 238, 522))),
     MAP: ((12, 12, 12), (SOFTWARE + ", 4096^2", (242, 242, 242))),
     INJECT: ((1, 3, 8), (SOFTWARE, (124, 124, 124))),
+    TRACED: ((13, 15, 20), (SOFTWARE + ", 4096^2", (366, 366, 366))),  # of both rows above
     FILTER: ((0.2, 0.8, 5), (PROTOTYPE, (0.2, 0.8, 7))),
     CONES: ((60, 70, 80), (PROTOTYPE + ", not merged", (59, 73, 82))),
     EVERY: ((190, 230, 260), (PROTOTYPE, (217, 272, 313))),
@@ -46,7 +55,8 @@ def _row(calibration: Calibration, stage: str, k: int, milliseconds: float, limi
 
 def _stages(calibration: Calibration, sponza: Sponza, scene: ir.Scene, k: int) -> list[Row]:
     way = method(RESOLUTIONS[k])
-    tessellation, every = ir.Tessellation(), ir.EveryPixel()
+    tessellation, every = ir.Tessellation(spacing=SPACING), ir.EveryPixel()
+    injection, isotropic = ir.ShadowMapInjection(), ir.VolumeCoverage()
     domain = stages.place(way.grid, scene, sponza.camera)
     voxels, tessellated = (stages.voxelize(technique, scene, domain) for technique in (way.voxelize, tessellation))
     patch = stages.voxelize(way.voxelize, scene, stages.place(_patch(scene, sponza), scene, sponza.camera))
@@ -56,18 +66,22 @@ def _stages(calibration: Calibration, sponza: Sponza, scene: ir.Scene, k: int) -
     def march(share: Any) -> Any:
         return stages.march(way.march, pyramid, sponza.gbuffer, scene, share=share)
 
-    rasterize, tessellate, light, light_patch, traced, filtered, shared, everywhere = least(
+    light, light_patch, traced = least(
+        timed(lambda: stages.light_voxels(injection, scene, voxels)),
+        timed(lambda: stages.light_voxels(injection, scene, patch)),
+        timed(lambda: stages.light_voxels(ir.TracedLighting(), scene, voxels)),
+        repeats=REPEATS_OF_LIGHT,
+    )
+    rasterize, tessellate, filtered, shared, everywhere = least(
         timed(lambda: stages.voxelize(way.voxelize, scene, domain)),
         timed(lambda: stages.voxelize(tessellation, scene, domain)),
-        timed(lambda: stages.light_voxels(way.light_voxels, scene, voxels)),
-        timed(lambda: stages.light_voxels(way.light_voxels, scene, patch)),
-        timed(lambda: stages.light_voxels(ir.TracedLighting(), scene, voxels)),
-        timed(lambda: stages.prefilter(way.prefilter, lit)),
+        timed(lambda: stages.prefilter(isotropic, lit)),
         timed(lambda: march(INTERLEAVED)),
         timed(lambda: march(every)),
         repeats=REPEATS,
     )
-    texels = way.light_voxels.size**2
+    texels, texels_bytes = injection.size**2, stages.prefilter(isotropic, lit).bytes
+    rays = stages.light_voxels(ir.TracedLighting(), scene, voxels).counts.asdict()["shadow_rays"]
     holes = ir.voxel_coverage(tessellated, stages.voxelize(ir.ExactOverlap(), scene, domain))
 
     def voxelizing(grid: Any) -> Limit:
@@ -83,13 +97,13 @@ def _stages(calibration: Calibration, sponza: Sponza, scene: ir.Scene, k: int) -
 
     scale = cones_scale(calibration)
     closed = f"{len(tessellated)} voxels, {holes.holes} holes of {holes.exact} voxels of the exact overlap"
-    both = f"the map takes {light_patch:.2f} ms, with injection {light:.2f}; traced without a map, both take {traced:.2f} ms"
     return [
         row(RASTERIZE, rasterize, voxelizing(voxels), note=f"{len(voxels)} voxels"),
         row(TESSELLATE, tessellate, voxelizing(tessellated), note=closed, details={"holes": holes.holes, "missing": holes.missing}),
-        row(MAP, light_patch, lambda c: limits.light_map(c, texels), note=f"map of {way.light_voxels.size}^2; {both}"),
+        row(MAP, light_patch, lambda c: limits.light_map(c, texels), note=f"map of {injection.size}^2; with injection {light:.2f} ms"),
         row(INJECT, light - light_patch, lambda c: limits.inject(c, texels, len(voxels)), note="what is left of the whole beside the map"),
-        row(FILTER, filtered, lambda c: limits.prefilter(c, RESOLUTIONS[k], len(voxels))),
+        row(TRACED, traced, lambda c: limits.trace_lights(c, rays, len(voxels)), note="what TracedLighting does in place of both"),
+        row(FILTER, filtered, lambda c: limits.prefilter(c, texels_bytes, len(voxels))),
         row(CONES, shared, marching(INTERLEAVED), scale=scale),
         row(EVERY, everywhere, marching(every), scale=scale),
     ]

@@ -55,6 +55,11 @@ def test_every_limit_is_positive_and_grows_with_the_work():
         lambda n: limits.path_sample(c, n, 1),
         lambda n: limits.cone_march(c, n),
         lambda n: limits.voxel_frame(c, n, n, n, n),
+        lambda n: limits.voxelize(c, n, n, n, n),
+        lambda n: limits.light_map(c, n),
+        lambda n: limits.inject(c, n, n),
+        lambda n: limits.trace_lights(c, n, n),
+        lambda n: limits.prefilter(c, n, n),
     ]
     for limit in made:
         assert 0 < limit(1000) < limit(2000)
