@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from typing import Any
 
 import interreflect as ir
@@ -15,12 +16,12 @@ from interreflect import stages
 
 REPEATS = 9
 REPEATS_OF_LIGHT = 25  # injection is a small difference of two
-SPACING = 0.7  # of tessellated vertices, voxels: the widest that left no holes
+SPACINGS = (0.7, 0.7, 0.5)  # of tessellated vertices, voxels: the widest of those tried that leave no holes
 GLOSSY = "sponza_crytek/glossy.toml"
 SOFTWARE, PROTOTYPE = "software OpenGL, older machine", "prototype, machine of the targets"
 RASTERIZE, TESSELLATE, MAP, INJECT = (
     "voxelize, rasterized, 4 samples",
-    "voxelize, tessellated",
+    "voxelize, tessellated, no holes",
     "light for injection, shadow map",
     "injection",
 )
@@ -55,7 +56,7 @@ def _row(calibration: Calibration, stage: str, k: int, milliseconds: float, limi
 
 def _stages(calibration: Calibration, sponza: Sponza, scene: ir.Scene, k: int) -> list[Row]:
     way = method(RESOLUTIONS[k])
-    tessellation, every = ir.Tessellation(spacing=SPACING), ir.EveryPixel()
+    tessellation, every = ir.Tessellation(spacing=SPACINGS[k]), ir.EveryPixel()
     injection, isotropic = ir.ShadowMapInjection(), ir.VolumeCoverage()
     domain = stages.place(way.grid, scene, sponza.camera)
     voxels, tessellated = (stages.voxelize(technique, scene, domain) for technique in (way.voxelize, tessellation))
@@ -96,10 +97,11 @@ def _stages(calibration: Calibration, sponza: Sponza, scene: ir.Scene, k: int) -
         return _row(calibration, stage, k, milliseconds, limit, **more)
 
     scale = cones_scale(calibration)
-    closed = f"{len(tessellated)} voxels, {holes.holes} holes of {holes.exact} voxels of the exact overlap"
+    closed = f"spacing {SPACINGS[k]}, {len(tessellated)} voxels, {holes.holes} holes of {holes.exact} voxels of the exact overlap"
+    vertices = row(TESSELLATE, tessellate, voxelizing(tessellated), note=closed, details={"holes": holes.holes, "missing": holes.missing})
     return [
         row(RASTERIZE, rasterize, voxelizing(voxels), note=f"{len(voxels)} voxels"),
-        row(TESSELLATE, tessellate, voxelizing(tessellated), note=closed, details={"holes": holes.holes, "missing": holes.missing}),
+        dataclasses.replace(vertices, met=bool(vertices.met) and holes.holes == 0),
         row(MAP, light_patch, lambda c: limits.light_map(c, texels), note=f"map of {injection.size}^2; with injection {light:.2f} ms"),
         row(INJECT, light - light_patch, lambda c: limits.inject(c, texels, len(voxels)), note="what is left of the whole beside the map"),
         row(TRACED, traced, lambda c: limits.trace_lights(c, rays, len(voxels)), note="what TracedLighting does in place of both"),
