@@ -1214,10 +1214,10 @@ class SphericalHarmonicVoxels:
     description: ClassVar[dict[str, Any]]
     stages: ClassVar[tuple[str, ...]]
 
-    def __init__(self, *, levels: int=..., opacity: str=...) -> None:
+    def __init__(self, *, levels: int=..., dense_limit: int=..., opacity: str=...) -> None:
         ...
 
-    def replace(self, *, levels: int=..., opacity: str=...) -> SphericalHarmonicVoxels:
+    def replace(self, *, levels: int=..., dense_limit: int=..., opacity: str=...) -> SphericalHarmonicVoxels:
         ...
 
     def asdict(self) -> dict[str, Any]:
@@ -1231,6 +1231,10 @@ class SphericalHarmonicVoxels:
 
     @property
     def levels(self) -> int:
+        ...
+
+    @property
+    def dense_limit(self) -> int:
         ...
 
     @property
@@ -1241,10 +1245,10 @@ class OctantCoverage:
     description: ClassVar[dict[str, Any]]
     stages: ClassVar[tuple[str, ...]]
 
-    def __init__(self, *, levels: int=..., opacity: str=...) -> None:
+    def __init__(self, *, levels: int=..., dense_limit: int=..., opacity: str=...) -> None:
         ...
 
-    def replace(self, *, levels: int=..., opacity: str=...) -> OctantCoverage:
+    def replace(self, *, levels: int=..., dense_limit: int=..., opacity: str=...) -> OctantCoverage:
         ...
 
     def asdict(self) -> dict[str, Any]:
@@ -1258,6 +1262,10 @@ class OctantCoverage:
 
     @property
     def levels(self) -> int:
+        ...
+
+    @property
+    def dense_limit(self) -> int:
         ...
 
     @property
@@ -1268,10 +1276,10 @@ class Anisotropic:
     description: ClassVar[dict[str, Any]]
     stages: ClassVar[tuple[str, ...]]
 
-    def __init__(self, *, levels: int=...) -> None:
+    def __init__(self, *, levels: int=..., dense_limit: int=...) -> None:
         ...
 
-    def replace(self, *, levels: int=...) -> Anisotropic:
+    def replace(self, *, levels: int=..., dense_limit: int=...) -> Anisotropic:
         ...
 
     def asdict(self) -> dict[str, Any]:
@@ -1285,16 +1293,20 @@ class Anisotropic:
 
     @property
     def levels(self) -> int:
+        ...
+
+    @property
+    def dense_limit(self) -> int:
         ...
 class SurfaceCoverage:
     """Opacity is a quarter of the sum of the eight below it, clamped; radiance keeps their mean colour."""
     description: ClassVar[dict[str, Any]]
     stages: ClassVar[tuple[str, ...]]
 
-    def __init__(self, *, levels: int=..., kernel: str=..., format: str=..., opacity: str=...) -> None:
+    def __init__(self, *, levels: int=..., dense_limit: int=..., kernel: str=..., format: str=..., opacity: str=...) -> None:
         ...
 
-    def replace(self, *, levels: int=..., kernel: str=..., format: str=..., opacity: str=...) -> SurfaceCoverage:
+    def replace(self, *, levels: int=..., dense_limit: int=..., kernel: str=..., format: str=..., opacity: str=...) -> SurfaceCoverage:
         ...
 
     def asdict(self) -> dict[str, Any]:
@@ -1308,6 +1320,10 @@ class SurfaceCoverage:
 
     @property
     def levels(self) -> int:
+        ...
+
+    @property
+    def dense_limit(self) -> int:
         ...
 
     @property
@@ -1326,10 +1342,10 @@ class VolumeCoverage:
     description: ClassVar[dict[str, Any]]
     stages: ClassVar[tuple[str, ...]]
 
-    def __init__(self, *, levels: int=..., kernel: str=..., format: str=...) -> None:
+    def __init__(self, *, levels: int=..., dense_limit: int=..., kernel: str=..., format: str=...) -> None:
         ...
 
-    def replace(self, *, levels: int=..., kernel: str=..., format: str=...) -> VolumeCoverage:
+    def replace(self, *, levels: int=..., dense_limit: int=..., kernel: str=..., format: str=...) -> VolumeCoverage:
         ...
 
     def asdict(self) -> dict[str, Any]:
@@ -1343,6 +1359,10 @@ class VolumeCoverage:
 
     @property
     def levels(self) -> int:
+        ...
+
+    @property
+    def dense_limit(self) -> int:
         ...
 
     @property

@@ -8,6 +8,7 @@
 #include "data/buffer.h"
 #include "data/counts.h"
 #include "data/domain.h"
+#include "data/texel_bricks.h"
 #include "math/vectors.h"
 
 namespace interreflect {
@@ -66,6 +67,9 @@ struct LitVoxels {
 /// index(b), index(b + y), index(b + z) and index(b + y + z). Valid wherever -0.5 <= q < size + 0.5, so nothing must be clamped
 /// inside the domain or within half a finest voxel of it.
 ///
+/// A level is dense, or it has bricks: only its texels that are not air are then kept, after one that is, in ascending order of
+/// their place (x fastest), and the bricks say which is where.
+///
 /// `faces` of a level is the number of its volumes, one after the other: 1; 6, for what is seen through the texel's faces
 /// -x +x -y +y -z +z from outside; or 8, for what is seen along the octants of directions. Of six, an eye looking along d reads
 /// face 0 where d.x > 0 and 1 where d.x < 0 (it looks at the side that faces it), and so on; it blends the three by d * d. Of
@@ -77,14 +81,21 @@ struct Pyramid {
         ivec3 size{0}, origin{0};
         int faces = 1;
         Buffer<std::uint16_t> texels;
+        TexelBricks bricks{};
 
-        std::size_t row() const { return static_cast<std::size_t>(size.x) + 2; }                 // texels from y to y + 1
-        std::size_t slice() const { return row() * (static_cast<std::size_t>(size.y) + 2); }     // from z to z + 1
-        std::size_t volume() const { return slice() * (static_cast<std::size_t>(size.z) + 2); }  // from face to face
+        bool dense() const { return bricks.count.x == 0; }
+        std::size_t row() const { return static_cast<std::size_t>(size.x) + 2; }              // dense: texels from y to y + 1
+        std::size_t slice() const { return row() * (static_cast<std::size_t>(size.y) + 2); }  // from z to z + 1
+        std::size_t volume() const {                                                          // from face to face
+            return dense() ? slice() * (static_cast<std::size_t>(size.z) + 2)
+                           : texels.size() / (4 * static_cast<std::size_t>(faces));
+        }
         /// Number of a texel, each coordinate in [-1, size]; its halves start at 4 times this.
         std::size_t index(int x, int y, int z, int face = 0) const {
-            return static_cast<std::size_t>(face) * volume() + static_cast<std::size_t>(z + 1) * slice() +
-                   static_cast<std::size_t>(y + 1) * row() + static_cast<std::size_t>(x + 1);
+            const std::size_t first = static_cast<std::size_t>(face) * volume();
+            if (!dense()) return first + bricks.at(x, y, z);
+            return first + static_cast<std::size_t>(z + 1) * slice() + static_cast<std::size_t>(y + 1) * row() +
+                   static_cast<std::size_t>(x + 1);
         }
     };
     Domain domain;
@@ -96,7 +107,7 @@ struct Pyramid {
 
     std::size_t bytes() const {
         std::size_t sum = 0;
-        for (const auto& level : levels) sum += level.texels.bytes();
+        for (const auto& level : levels) sum += level.texels.bytes() + level.bricks.bytes();
         return sum;
     }
 };

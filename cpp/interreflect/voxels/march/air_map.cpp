@@ -49,7 +49,9 @@ AirMap::Level map_level(const Pyramid::Level& level) {
 AirMap::AirMap(const Pyramid& pyramid) {
     const int count = static_cast<int>(pyramid.levels.size());
     for (int i = first_level; i <= last_level && i < count; ++i)
-        levels_.push_back(map_level(pyramid.levels[static_cast<std::size_t>(i)]));
+        levels_.push_back(pyramid.levels[static_cast<std::size_t>(i)].dense()
+                              ? map_level(pyramid.levels[static_cast<std::size_t>(i)])
+                              : Level{});
 }
 
 }  // namespace interreflect

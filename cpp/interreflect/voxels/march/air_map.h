@@ -19,10 +19,12 @@ class AirMap {
     };
 
     explicit AirMap(const Pyramid& pyramid);
-    /// Null for a level that has no map.
+    /// Null for a level that has no map: one in bricks needs none.
     const Level* of(int level) const {
         const int i = level - first_level;
-        return i >= 0 && i < static_cast<int>(levels_.size()) ? &levels_[static_cast<std::size_t>(i)] : nullptr;
+        if (i < 0 || i >= static_cast<int>(levels_.size())) return nullptr;
+        const Level& map = levels_[static_cast<std::size_t>(i)];
+        return map.words.empty() ? nullptr : &map;
     }
 
   private:

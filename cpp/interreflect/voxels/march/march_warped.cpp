@@ -55,6 +55,16 @@ struct FirstTexels {
     I x, y, z;
 };
 
+/// As place_in_bricks, of one tap; those of cones that see nothing may lie anywhere.
+HWY_INLINE int offset_in_bricks(const LevelView& level, int x, int y, int z) {
+    constexpr int side = TexelBricks::side, edge = TexelBricks::edge;
+    const auto within = [](int tap, int count) HWY_ATTR { return tap < 0 ? 0 : tap < count * side ? tap : count * side - 1; };
+    const int nx = level.bricks_x, ny = level.bricks_y;
+    const int tx = within(x + 1, nx), ty = within(y + 1, ny), tz = within(z + 1, level.bricks_z);
+    const int brick = level.bricks[tx / side + nx * (ty / side + ny * (tz / side))];
+    return brick * TexelBricks::volume + tx % side + edge * (ty % side + edge * (tz % side));
+}
+
 /// Trilinear taps at `at` voxels, each of its own level; `scale`: texels a voxel there. `nested`: levels begin elsewhere than at
 /// 0.
 template <bool nested, class D, class I, class V = hn::Vec<D>>
@@ -72,6 +82,16 @@ HWY_INLINE FirstTexels<I> place_levels(D d, const LevelTable& table, I level, V 
                iz = place(at.z, table.origin_z, taps.fz);
     const auto rows = hn::Mul(iy, entry(di, table.row, level)), slices = hn::Mul(iz, entry(di, table.slice, level));
     hn::Store(hn::Add(hn::Add(hn::ShiftLeft<2>(ix), rows), slices), di, taps.offset);
+    if (table.views[0].numbers != nullptr) {
+        alignas(64) int32_t levels[max_lanes], x[max_lanes], y[max_lanes], z[max_lanes];
+        hn::Store(level, di, levels);
+        hn::Store(ix, di, x);
+        hn::Store(iy, di, y);
+        hn::Store(iz, di, z);
+        for (std::size_t lane = 0; lane < hn::Lanes(d); ++lane)
+            if (const LevelView& view = table.views[levels[lane]]; view.numbers != nullptr)
+                taps.offset[lane] = offset_in_bricks(view, x[lane], y[lane], z[lane]);
+    }
     return {ix, iy, iz};
 }
 

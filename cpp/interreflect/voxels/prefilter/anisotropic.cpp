@@ -59,13 +59,12 @@ void write_slices_faces(const LevelView& level, const VoxelView& voxels, int z) 
     }
 }
 
-/// One slice of the second level's six faces, from the voxels themselves; `number` is scratch: 1 + voxel of every finest texel of
-/// two slices, zero before and after.
-void first_faces_slice(const LevelView& finest, const LevelView& coarse, const VoxelView& voxels, int z, std::uint32_t* number) {
+/// One slice of the second level's six faces, from the voxels themselves; `number`: 1 + voxel of every texel of the two slices of
+/// the finest level below it, 0 where there is none.
+void first_faces_slice(const LevelView& finest, const LevelView& coarse, const VoxelView& voxels, int z,
+                       const std::uint32_t* number) {
     const D d;
-    const int per_slice = finest.nx * finest.ny, base = 2 * z * per_slice;
-    for (std::size_t i = voxels.begin; i < voxels.end; ++i)
-        number[static_cast<int>(voxels.cell[i]) - base] = static_cast<std::uint32_t>(i + 1);
+    const int per_slice = finest.nx * finest.ny;
     for (int y = 0; y < coarse.ny; ++y)
         for (int x = 0; x < coarse.nx; ++x) {
             std::uint32_t child[8], any = 0;
@@ -85,7 +84,6 @@ void first_faces_slice(const LevelView& finest, const LevelView& coarse, const V
                 store(value, coarse.texels + static_cast<std::size_t>(face) * coarse.volume + at(coarse, x, y, z));
             }
         }
-    for (std::size_t i = voxels.begin; i < voxels.end; ++i) number[static_cast<int>(voxels.cell[i]) - base] = 0;
 }
 
 }  // namespace
@@ -94,7 +92,10 @@ void first_faces_slice(const LevelView& finest, const LevelView& coarse, const V
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
+#include <algorithm>
+
 #include "math/parallel.h"
+#include "voxels/prefilter/bricks.h"
 
 namespace interreflect {
 namespace {
@@ -102,6 +103,19 @@ HWY_EXPORT(reduce_slice_faces);
 HWY_EXPORT(write_slices);
 HWY_EXPORT(write_slices_faces);
 HWY_EXPORT(first_faces_slice);
+HWY_EXPORT(write_packed);
+
+/// The second level's texels of a block from the voxels, whose numbers are those of the finest level's texels.
+void first_faces_block(const TexelBlock& block, const VoxelView& voxels) {
+    const LevelView& fine = block.fine;
+    for (int z = 0; z < block.coarse.nz; ++z) {
+        std::uint32_t number[2 * TexelBlock::side * TexelBlock::side] = {};
+        for (int k = 0; k < std::min(2, fine.nz - 2 * z); ++k)
+            for (int y = 0; y < fine.ny; ++y)
+                for (int x = 0; x < fine.nx; ++x) number[(k * fine.ny + y) * fine.nx + x] = block.number_at(x, y, 2 * z + k);
+        HWY_DYNAMIC_DISPATCH(first_faces_slice)(fine, block.coarse, voxels, z, number);
+    }
+}
 }  // namespace
 
 Pyramid build_anisotropic(const LevelKnobs& knobs, const LitVoxels& lit) {
@@ -109,6 +123,16 @@ Pyramid build_anisotropic(const LevelKnobs& knobs, const LitVoxels& lit) {
     pyramid.scale = radiance_scale(lit);
     const Normals normals = in_grid(mean_normals(lit), lit);
     const VoxelView voxels = view(lit, pyramid.scale, normals);
+    const auto reduce = [](const LevelView& fine, const LevelView& filled, int z) {
+        HWY_DYNAMIC_DISPATCH(reduce_slice_faces)(fine, filled, z);
+    };
+    if (!pyramid.levels[0].dense()) {
+        const auto pack = [](std::uint16_t* texels, std::size_t, const VoxelView& some) {
+            HWY_DYNAMIC_DISPATCH(write_packed)(texels, some, false);
+        };
+        build_levels_in_bricks(pyramid, voxels, pack, reduce, [&](const TexelBlock& block) { first_faces_block(block, voxels); });
+        return pyramid;
+    }
     write_coarse_grids(pyramid, voxels, [](const LevelView& level, const VoxelView& inside, int z) {
         HWY_DYNAMIC_DISPATCH(write_slices_faces)(level, inside, z);
     });
@@ -118,11 +142,11 @@ Pyramid build_anisotropic(const LevelKnobs& knobs, const LitVoxels& lit) {
         HWY_DYNAMIC_DISPATCH(write_slices)(finest, inside, z, false);
         if (!more) return;
         std::vector<std::uint32_t> number(2 * static_cast<std::size_t>(finest.nx) * static_cast<std::size_t>(finest.ny), 0);
+        const auto base = static_cast<std::uint32_t>(static_cast<std::size_t>(z) * number.size());
+        for (std::size_t i = inside.begin; i < inside.end; ++i) number[inside.cell[i] - base] = static_cast<std::uint32_t>(i + 1);
         HWY_DYNAMIC_DISPATCH(first_faces_slice)(finest, coarse, inside, z, number.data());
     });
-    reduce_coarse(pyramid, [](const LevelView& fine, const LevelView& filled, int z) {
-        HWY_DYNAMIC_DISPATCH(reduce_slice_faces)(fine, filled, z);
-    });
+    reduce_coarse(pyramid, reduce);
     pyramid.counts.voxels = lit.grid->size();
     return pyramid;
 }

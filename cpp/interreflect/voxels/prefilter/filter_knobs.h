@@ -9,11 +9,18 @@ namespace interreflect {
 /// Of every filter.
 struct LevelKnobs {
     int levels = 0;
+    int dense_limit = 128;
 
     bool operator==(const LevelKnobs&) const = default;
     static constexpr auto params = std::tuple{
         Param{"levels", &LevelKnobs::levels, "most levels, the finest one included; 0: down to one texel. Freed 2018 has 6",
-              Unit::none, between(0, 11)}};
+              Unit::none, between(0, 11)},
+        Param{
+            "dense_limit", &LevelKnobs::dense_limit,
+            "MiB that one volume of a level may need with all of its texels; where one would need more, it and all above a 32nd "
+            "of this are kept in bricks of 4 x 4 x 4, of which only those that are not all air exist: slower to march by a "
+            "quarter, but as large as the surface. Changes no result. Nested grids have none",
+            Unit::none, between(0, 65536)}};
 };
 
 /// Of filters that keep surfaces opaque.

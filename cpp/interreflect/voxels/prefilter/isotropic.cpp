@@ -110,10 +110,33 @@ void reduce_slice(const LevelView& fine, const LevelView& coarse, int z, const I
     }
 }
 
-/// The four volumes of slices 2 z and 2 z + 1. Of a step between two hemispheres band 0 is the mean, and band 1, whose three
-/// functions are the direction's coordinates c with mean c^2 = 1/3, is 3 times the mean of (B - F)/2 |d . n|: 3/4 (B - F) n.
-void write_slices_harmonics(const LevelView& level, const VoxelView& voxels, int z) {
+/// Four volumes of one voxel, each by `write(volume, texel)`. Of a step between two hemispheres band 0 is the mean, and band 1,
+/// whose three functions are the direction's coordinates c with mean c^2 = 1/3, is 3 times the mean of (B - F)/2 |d . n|:
+/// 3/4 (B - F) n.
+template <class Write>
+HWY_INLINE void write_harmonics(const VoxelView& voxels, std::size_t i, const Write& write) {
     const D d;
+    const V front = premultiplied(voxels.radiance + 3 * i, voxels.opacity[i], voxels.inverse_scale);
+    if (voxels.back == nullptr) {
+        write(0, front);
+        for (std::size_t v = 1; v < 4; ++v) write(v, hn::Zero(d));
+        return;
+    }
+    const V back = premultiplied(voxels.back + 3 * i, voxels.opacity[i], voxels.inverse_scale), half = hn::Set(d, 0.5f);
+    write(0, hn::Mul(hn::Add(front, back), half));
+    const V step = hn::Mul(hn::Sub(back, front), hn::Set(d, 0.75f));  // opacity cancels
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        write(axis + 1, hn::Mul(step, hn::Set(d, voxels.normal[i * voxels.normal_stride + axis])));
+}
+
+/// The four volumes of voxels one after the other; `texels`: of voxel 0.
+void write_packed_harmonics(std::uint16_t* texels, std::size_t volume, const VoxelView& voxels) {
+    for (std::size_t i = voxels.begin; i < voxels.end; ++i)
+        write_harmonics(voxels, i, [&](std::size_t v, V texel) HWY_ATTR { store(texel, texels + v * volume + 4 * i); });
+}
+
+/// The four volumes of slices 2 z and 2 z + 1.
+void write_slices_harmonics(const LevelView& level, const VoxelView& voxels, int z) {
     VoxelView none = voxels;
     none.end = none.begin;
     LevelView volumes[4] = {level, level, level, level};
@@ -123,17 +146,7 @@ void write_slices_harmonics(const LevelView& level, const VoxelView& voxels, int
     }
     for (std::size_t i = voxels.begin; i < voxels.end; ++i) {
         const Texel texel = texel_of(level, voxels, i);
-        const V front = premultiplied(voxels.radiance + 3 * i, voxels.opacity[i], voxels.inverse_scale);
-        if (voxels.back == nullptr) {
-            write_voxel(volumes[0], texel, front);
-            continue;
-        }
-        const V back = premultiplied(voxels.back + 3 * i, voxels.opacity[i], voxels.inverse_scale), half = hn::Set(d, 0.5f);
-        write_voxel(volumes[0], texel, hn::Mul(hn::Add(front, back), half));
-        const V step = hn::Mul(hn::Sub(back, front), hn::Set(d, 0.75f));  // opacity cancels
-        for (int axis = 0; axis < 3; ++axis)
-            write_voxel(volumes[axis + 1], texel,
-                        hn::Mul(step, hn::Set(d, voxels.normal[i * voxels.normal_stride + static_cast<std::size_t>(axis)])));
+        write_harmonics(voxels, i, [&](std::size_t v, V value) HWY_ATTR { write_voxel(volumes[v], texel, value); });
     }
 }
 
@@ -143,20 +156,28 @@ void write_slices_harmonics(const LevelView& level, const VoxelView& voxels, int
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
+#include "voxels/prefilter/bricks.h"
+
 namespace interreflect {
 namespace {
 HWY_EXPORT(reduce_slice);
 HWY_EXPORT(write_slices);
 HWY_EXPORT(write_slices_harmonics);
+HWY_EXPORT(write_packed);
+HWY_EXPORT(write_packed_harmonics);
 
 template <class Write>
-void build_filtered(Pyramid& pyramid, const VoxelView& voxels, const IsotropicFilter& filter, const Write& write) {
-    build_levels(pyramid, voxels, filter.tent || filter.columns, write,
-                 [&](const LevelView& fine, const LevelView& coarse, int z) {
-                     thread_local std::vector<float> sums;
-                     sums.resize(4 * (static_cast<std::size_t>(fine.nx) + 3) * static_cast<std::size_t>(filter.volumes));
-                     HWY_DYNAMIC_DISPATCH(reduce_slice)(fine, coarse, z, filter, sums.data());
-                 });
+void build_filtered(Pyramid& pyramid, const VoxelView& voxels, const IsotropicFilter& filter, const Write& write,
+                    const PackVoxels& pack) {
+    const auto reduce = [&](const LevelView& fine, const LevelView& coarse, int z) {
+        thread_local std::vector<float> sums;
+        sums.resize(4 * (static_cast<std::size_t>(fine.nx) + 3) * static_cast<std::size_t>(filter.volumes));
+        HWY_DYNAMIC_DISPATCH(reduce_slice)(fine, coarse, z, filter, sums.data());
+    };
+    if (pyramid.levels[0].dense())
+        build_levels(pyramid, voxels, filter.tent || filter.columns, write, reduce);
+    else
+        build_levels_in_bricks(pyramid, voxels, pack, reduce);
 }
 
 }  // namespace
@@ -166,9 +187,14 @@ Pyramid build_isotropic(Coverage coverage, bool columns, const IsotropicKnobs& k
     Pyramid pyramid = make_levels(lit.grid->domain, 1, knobs);
     const float scale = radiance_scale(lit);  // refuses what is not finite
     pyramid.scale = filter.eight_bits ? 1.0f : scale;
-    build_filtered(pyramid, view(lit, pyramid.scale), filter, [&](const LevelView& level, const VoxelView& voxels, int z) {
-        HWY_DYNAMIC_DISPATCH(write_slices)(level, voxels, z, filter.eight_bits);
-    });
+    build_filtered(
+        pyramid, view(lit, pyramid.scale), filter,
+        [&](const LevelView& level, const VoxelView& voxels, int z) {
+            HWY_DYNAMIC_DISPATCH(write_slices)(level, voxels, z, filter.eight_bits);
+        },
+        [&](std::uint16_t* texels, std::size_t, const VoxelView& voxels) {
+            HWY_DYNAMIC_DISPATCH(write_packed)(texels, voxels, filter.eight_bits);
+        });
     return pyramid;
 }
 
@@ -176,10 +202,14 @@ Pyramid build_harmonics(bool columns, const LevelKnobs& knobs, const LitVoxels& 
     Pyramid pyramid = make_levels(lit.grid->domain, 4, knobs);
     pyramid.scale = radiance_scale(lit);
     const Normals normals = front_normals(lit);
-    build_filtered(pyramid, view(lit, pyramid.scale, normals), {Coverage::surface, false, false, columns, 4},
-                   [](const LevelView& level, const VoxelView& voxels, int z) {
-                       HWY_DYNAMIC_DISPATCH(write_slices_harmonics)(level, voxels, z);
-                   });
+    build_filtered(
+        pyramid, view(lit, pyramid.scale, normals), {Coverage::surface, false, false, columns, 4},
+        [](const LevelView& level, const VoxelView& voxels, int z) {
+            HWY_DYNAMIC_DISPATCH(write_slices_harmonics)(level, voxels, z);
+        },
+        [](std::uint16_t* texels, std::size_t volume, const VoxelView& voxels) {
+            HWY_DYNAMIC_DISPATCH(write_packed_harmonics)(texels, volume, voxels);
+        });
     return pyramid;
 }
 

@@ -135,19 +135,25 @@ HWY_INLINE void write_voxel(const LevelView& level, const Texel& texel, V value)
                 store(value, level.texels + at(level, bx, by, bz));
 }
 
-/// Slices 2 z and 2 z + 1 of a grid's level (with the border next to them): cleared, then written; in `bytes`, radiance is
-/// clipped at 1 before opacity scales it.
+/// The texel of voxel `i`; in `bytes`, radiance is clipped at 1 before opacity scales it.
+HWY_INLINE V voxel_texel(const VoxelView& voxels, std::size_t i, bool bytes) {
+    const float *radiance = voxels.radiance + 3 * i, opacity = voxels.opacity[i];
+    return bytes ? eight_bits(hn::Mul(hn::Min(premultiplied(radiance, 1.0f, 1.0f), hn::Set(D(), 1.0f)), hn::Set(D(), opacity)))
+                 : premultiplied(radiance, opacity, voxels.inverse_scale);
+}
+
+/// Slices 2 z and 2 z + 1 of a grid's level (with the border next to them): cleared, then written.
 inline void write_slices(const LevelView& level, const VoxelView& voxels, int z, bool bytes) {
     const int first = z == 0 ? -1 : 2 * z, last = 2 * z + 2 >= level.nz ? level.nz : 2 * z + 1;
     __builtin_memset(level.texels + static_cast<std::size_t>(first + 1) * level.slice, 0,
                      static_cast<std::size_t>(last - first + 1) * level.slice * sizeof(std::uint16_t));
-    for (std::size_t i = voxels.begin; i < voxels.end; ++i) {
-        const float *radiance = voxels.radiance + 3 * i, opacity = voxels.opacity[i];
-        const V value =
-            bytes ? eight_bits(hn::Mul(hn::Min(premultiplied(radiance, 1.0f, 1.0f), hn::Set(D(), 1.0f)), hn::Set(D(), opacity)))
-                  : premultiplied(radiance, opacity, voxels.inverse_scale);
-        write_voxel(level, texel_of(level, voxels, i), value);
-    }
+    for (std::size_t i = voxels.begin; i < voxels.end; ++i)
+        write_voxel(level, texel_of(level, voxels, i), voxel_texel(voxels, i, bytes));
+}
+
+/// The same voxels one after the other; `texels`: of voxel 0.
+inline void write_packed(std::uint16_t* texels, const VoxelView& voxels, bool bytes) {
+    for (std::size_t i = voxels.begin; i < voxels.end; ++i) store(voxel_texel(voxels, i, bytes), texels + 4 * i);
 }
 
 }  // namespace HWY_NAMESPACE

@@ -41,8 +41,9 @@ struct VoxelView {
 /// The most bytes of a pyramid.
 constexpr std::uint64_t most_bytes = std::uint64_t{4} << 30;
 
-/// The pyramid's empty levels, at most as many as the knobs say: memory not yet written. Throws std::invalid_argument where they
-/// would take more than `most_bytes`, or where fewer levels are allowed than there are nested grids.
+/// The pyramid's empty levels, at most as many as the knobs say: memory not yet written. Those in bricks, which come first, have
+/// only the bricks' count. Throws std::invalid_argument where they
+/// would take more than `most_bytes` besides those in bricks, or where fewer levels are allowed than there are nested grids.
 Pyramid make_levels(const Domain& domain, int faces, const LevelKnobs& knobs);
 
 /// The power of two that brings the largest radiance just below 2^15; 1 where there is none. Throws std::invalid_argument where a
@@ -92,12 +93,12 @@ void write_coarse_grids(Pyramid& pyramid, const VoxelView& voxels, const Write& 
     for (int grid = 1; grid < pyramid.domain.cascades; ++grid) write_grid(pyramid, voxels, grid, write);
 }
 
-/// Levels from the third on, each from the one below it by `reduce(fine, coarse, slice)`, and the borders of all but the finest:
-/// the second level is made beside the finest, whose slices are then still in the core's cache.
+/// Levels after number `made`, each from the one below it by `reduce(fine, coarse, slice)`, and the borders from that one on: the
+/// second level is made beside the finest, whose slices are then still in the core's cache.
 template <class Reduce>
-void reduce_coarse(Pyramid& pyramid, const Reduce& reduce) {
-    for (std::size_t i = 1; i < pyramid.levels.size(); ++i) {
-        if (i > 1) {
+void reduce_coarse(Pyramid& pyramid, const Reduce& reduce, std::size_t made = 1) {
+    for (std::size_t i = made; i < pyramid.levels.size(); ++i) {
+        if (i > made) {
             const LevelView fine = view(pyramid.levels[i - 1]), coarse = above(pyramid, i - 1);
             over_slices(coarse, [&](int z) { reduce(fine, coarse, z); });
         }

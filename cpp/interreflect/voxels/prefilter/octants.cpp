@@ -174,32 +174,46 @@ void write_slices_octants(const LevelView& level, const VoxelView& voxels, int z
     }
 }
 
+/// The eight volumes of voxels one after the other; `texels`: of voxel 0.
+void write_packed_octants(std::uint16_t* texels, std::size_t volume, const VoxelView& voxels) {
+    for (std::size_t i = voxels.begin; i < voxels.end; ++i) write_sides(voxels, i, texels + 4 * i, volume);
+}
+
 }  // namespace
 }  // namespace HWY_NAMESPACE
 }  // namespace interreflect
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
+#include "voxels/prefilter/bricks.h"
+
 #include "math/parallel.h"
 
 namespace interreflect {
 namespace {
 HWY_EXPORT(reduce_slice_octants);
 HWY_EXPORT(write_slices_octants);
+HWY_EXPORT(write_packed_octants);
 }  // namespace
 
 Pyramid build_octants(bool columns, const LevelKnobs& knobs, const LitVoxels& lit) {
     Pyramid pyramid = make_levels(lit.grid->domain, 8, knobs);
     pyramid.scale = radiance_scale(lit);
     const Normals normals = in_grid(front_normals(lit), lit);
-    build_levels(
-        pyramid, view(lit, pyramid.scale, normals), columns,
-        [](const LevelView& level, const VoxelView& voxels, int z) {
-            HWY_DYNAMIC_DISPATCH(write_slices_octants)(level, voxels, z);
-        },
-        [&](const LevelView& fine, const LevelView& coarse, int z) {
-            HWY_DYNAMIC_DISPATCH(reduce_slice_octants)(fine, coarse, z, columns);
-        });
+    const VoxelView all = view(lit, pyramid.scale, normals);
+    const auto reduce = [&](const LevelView& fine, const LevelView& coarse, int z) {
+        HWY_DYNAMIC_DISPATCH(reduce_slice_octants)(fine, coarse, z, columns);
+    };
+    const auto pack = [](std::uint16_t* texels, std::size_t volume, const VoxelView& voxels) {
+        HWY_DYNAMIC_DISPATCH(write_packed_octants)(texels, volume, voxels);
+    };
+    const auto write = [](const LevelView& level, const VoxelView& voxels, int z) {
+        HWY_DYNAMIC_DISPATCH(write_slices_octants)(level, voxels, z);
+    };
+    if (pyramid.levels[0].dense())
+        build_levels(pyramid, all, columns, write, reduce);
+    else
+        build_levels_in_bricks(pyramid, all, pack, reduce);
     return pyramid;
 }
 

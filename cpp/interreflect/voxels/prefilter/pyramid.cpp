@@ -2,6 +2,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <span>
 #include <stdexcept>
 #include <string>
 
@@ -21,6 +22,19 @@ std::string sizes_of(const Domain& domain) {
     return domain.cascades > 1 ? std::to_string(domain.cascades) + " x " + one : one;
 }
 
+/// How many of the levels, none of which has texels yet, are to be in bricks. Nested grids fill each other's levels: they have
+/// none.
+std::size_t levels_in_bricks(const Pyramid& pyramid, int dense_limit) {
+    const auto much = static_cast<std::size_t>(dense_limit) << 20, some = much / 32;  // bytes
+    std::size_t most = 0, count = 0;
+    for (std::size_t i = 0; i < pyramid.levels.size(); ++i) {
+        const std::size_t bytes = pyramid.levels[i].volume() * 4 * sizeof(std::uint16_t);
+        most = std::max(most, bytes);
+        if (bytes > some) count = i + 1;
+    }
+    return most > much && pyramid.domain.cascades == 1 ? count : 0;
+}
+
 }  // namespace
 
 Pyramid make_levels(const Domain& domain, int faces, const LevelKnobs& knobs) {
@@ -30,22 +44,25 @@ Pyramid make_levels(const Domain& domain, int faces, const LevelKnobs& knobs) {
     Pyramid pyramid;
     pyramid.domain = domain;
     pyramid.faces = faces;
-    std::uint64_t bytes = 0;
     for (ivec3 size = domain.cells;;) {
         const std::size_t number = pyramid.levels.size();
         Pyramid::Level level;
         level.size = size;
         level.origin = number < static_cast<std::size_t>(domain.cascades) ? domain.origin[number] : ivec3(0);
         level.faces = number == 0 && faces == 6 ? 1 : faces;
-        bytes += halves_of(level) * sizeof(std::uint16_t);
         pyramid.levels.push_back(std::move(level));
         if (size == ivec3(1) || static_cast<int>(number) + 1 == knobs.levels) break;
         if (static_cast<int>(number) + 1 >= domain.cascades) size = (size + 1) / 2;
     }
+    const std::size_t in_bricks = levels_in_bricks(pyramid, knobs.dense_limit);
+    for (std::size_t i = 0; i < in_bricks; ++i) pyramid.levels[i].bricks.count = TexelBricks::count_for(pyramid.levels[i].size);
+    const auto dense = std::span(pyramid.levels).subspan(in_bricks);
+    std::uint64_t bytes = 0;
+    for (const auto& level : dense) bytes += halves_of(level) * sizeof(std::uint16_t);
     if (bytes > most_bytes)
         throw std::invalid_argument("prefilter: a pyramid of " + sizes_of(domain) + " voxels would need " +
                                     std::to_string(bytes) + " bytes, and at most " + std::to_string(most_bytes) + " are allowed");
-    for (auto& level : pyramid.levels) level.texels = Buffer<std::uint16_t>(halves_of(level));
+    for (auto& level : dense) level.texels = Buffer<std::uint16_t>(halves_of(level));
     return pyramid;
 }
 
