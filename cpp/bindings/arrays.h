@@ -53,4 +53,15 @@ py::array_t<Scalar> image_view(const Buffer<Scalar>& data, int width, int height
     return view(data.data(), {height, width}, owner);
 }
 
+/// A (4, 4) float64 matrix; ValueError names it.
+inline mat4 matrix4(const py::object& object, const char* name) {
+    const auto array = exact_array<double>(object, name);
+    if (array.ndim() != 2 || array.shape(0) != 4 || array.shape(1) != 4)
+        throw py::value_error(std::string(name) + " must have shape (4, 4)");
+    mat4 m;
+    for (int row = 0; row < 4; ++row)
+        for (int column = 0; column < 4; ++column) m[column][row] = static_cast<float>(array.at(row, column));
+    return m;
+}
+
 }  // namespace interreflect::bindings

@@ -73,16 +73,6 @@ Camera make_camera(Float3 position, Float3 target, Float3 up, float fov_x) {
     return camera;
 }
 
-mat4 matrix4(const py::object& object, const char* name) {
-    const auto array = exact_array<double>(object, name);
-    if (array.ndim() != 2 || array.shape(0) != 4 || array.shape(1) != 4)
-        throw py::value_error(std::string(name) + " must have shape (4, 4)");
-    mat4 m;
-    for (int row = 0; row < 4; ++row)
-        for (int column = 0; column < 4; ++column) m[column][row] = static_cast<float>(array.at(row, column));
-    return m;
-}
-
 std::vector<Placement> read_placements(const py::list& instances) {
     std::vector<Placement> placements;
     for (const auto& item : instances) {

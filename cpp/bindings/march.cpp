@@ -51,6 +51,16 @@ py::array_t<float> owned_image(Buffer<vec3> pixels, int width, int height) {
     return py::array_t<float>({height, width, 3}, data, owner);
 }
 
+std::vector<const Pyramid*> plain_pointers(const std::vector<std::shared_ptr<const Pyramid>>& pyramids) {
+    if (pyramids.empty()) throw py::value_error("pyramids must hold at least one Pyramid");
+    std::vector<const Pyramid*> each;
+    for (const auto& pyramid : pyramids) {
+        if (pyramid == nullptr) throw py::type_error("pyramids must be Pyramids, got None");
+        each.push_back(pyramid.get());
+    }
+    return each;
+}
+
 }  // namespace
 
 void bind_march(py::module_& m) {
@@ -61,26 +71,29 @@ void bind_march(py::module_& m) {
                static_cast<const Glossy*>(nullptr));
     m.def(
         "march",
-        [](const March& technique, const Pyramid& pyramid, const GBuffer& gbuffer, const BoundScene& scene, const Share& share,
-           std::uint32_t seed) {
+        [](const March& technique, const std::vector<std::shared_ptr<const Pyramid>>& pyramids, const GBuffer& gbuffer,
+           const BoundScene& scene, const Share& share, std::uint32_t seed) {
+            const auto each = plain_pointers(pyramids);
             return run([&] {
                 return std::make_shared<GatheredLight>(std::visit(
-                    [&](const auto& one) { return march(one, pyramid, gbuffer, scene.scene, *scene.intersector, share, seed); },
+                    [&](const auto& one) { return march(one, each, gbuffer, scene.scene, *scene.intersector, share, seed); },
                     technique));
             });
         },
-        py::arg("technique"), py::arg("pyramid"), py::arg("gbuffer"), py::arg("scene"), py::arg("share"), py::arg("seed"),
+        py::arg("technique"), py::arg("pyramids"), py::arg("gbuffer"), py::arg("scene"), py::arg("share"), py::arg("seed"),
         "Light that arrives over the hemisphere at the pixels.");
     m.def(
         "glossy",
-        [](const Glossy& technique, const Pyramid& pyramid, const GBuffer& gbuffer, const BoundScene& scene, std::uint32_t seed) {
+        [](const Glossy& technique, const std::vector<std::shared_ptr<const Pyramid>>& pyramids, const GBuffer& gbuffer,
+           const BoundScene& scene, std::uint32_t seed) {
+            const auto each = plain_pointers(pyramids);
             return run([&] {
-                return std::make_shared<GlossyLight>(std::visit(
-                    [&](const auto& one) { return glossy(one, pyramid, gbuffer, scene.scene, *scene.intersector, seed); },
-                    technique));
+                return std::make_shared<GlossyLight>(
+                    std::visit([&](const auto& one) { return glossy(one, each, gbuffer, scene.scene, *scene.intersector, seed); },
+                               technique));
             });
         },
-        py::arg("technique"), py::arg("pyramid"), py::arg("gbuffer"), py::arg("scene"), py::arg("seed"),
+        py::arg("technique"), py::arg("pyramids"), py::arg("gbuffer"), py::arg("scene"), py::arg("seed"),
         "Light that the glossy lobe reflects.");
     m.def(
         "shade",

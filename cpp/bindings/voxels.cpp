@@ -5,6 +5,7 @@
 #include <pybind11/stl.h>
 
 #include <array>
+#include <optional>
 #include <string>
 #include <variant>
 
@@ -13,6 +14,7 @@
 #include "bindings/run.h"
 #include "bindings/technique.h"
 #include "voxels/light_voxels.h"
+#include "voxels/move_voxels.h"
 #include "voxels/prefilter.h"
 #include "voxels/voxelize.h"
 
@@ -141,6 +143,17 @@ void array_property(py::class_<Value, Options...>& cls, const char* name, Buffer
         doc);
 }
 
+/// A rigid pose; ValueError for another matrix.
+BodyPose pose_of(std::uint32_t body, const py::object& world_from_body) {
+    const mat4 m = matrix4(world_from_body, "pose");
+    const mat3 turn(m);
+    const mat3 product = turn * glm::transpose(turn);
+    for (int k = 0; k < 9; ++k)
+        if (!(std::fabs(product[k / 3][k % 3] - (k % 4 == 0 ? 1.0f : 0.0f)) < 1e-4f))
+            throw py::value_error("pose must be a rotation and a translation");
+    return {body, turn, vec3(m[3])};
+}
+
 void bind_grid(py::module_& m) {
     py::class_<VoxelGrid, std::shared_ptr<VoxelGrid>> cls(m, "VoxelGrid",
                                                           "The voxels that the surface passes through, ascending by cell.");
@@ -154,6 +167,18 @@ void bind_grid(py::module_& m) {
     array_property(cls, "opacity", &VoxelGrid::opacity, "(n,): solid share of the surface, below 1 where a mask has holes.");
     array_property(cls, "area", &VoxelGrid::area,
                    "(n,): area of the solid surface inside, in faces of an unwarped voxel of the finest grid.");
+    cls.def_property_readonly(
+           "body", [](const VoxelGrid& grid) { return grid.pose.body; },
+           "Number of the body whose voxels these are, in its own space; 0: the world.")
+        .def(
+            "moved",
+            [](const VoxelGrid& grid, std::uint32_t body, const py::object& pose) {
+                if (grid.pose.body == 0 || body == 0) throw py::value_error("only voxels of a body can move");
+                const BodyPose to = pose_of(body, pose);
+                return run([&] { return std::make_shared<VoxelGrid>(move_voxels(grid, to)); });
+            },
+            py::arg("body"), py::arg("pose"),
+            "The voxels with their body, or a copy of it numbered `body`, at the (4, 4) pose `world_from_body`.");
     cls.def_property_readonly(
         "coordinates",
         [](const VoxelGrid& grid) {
@@ -206,6 +231,8 @@ py::array_t<float> read_level(const Pyramid& pyramid, int index, int face) {
 void bind_pyramid(py::module_& m) {
     py::class_<Pyramid, std::shared_ptr<Pyramid>>(m, "Pyramid", "Radiance and opacity of ever larger voxels, as half floats.")
         .def_readonly("domain", &Pyramid::domain)
+        .def_property_readonly(
+            "body", [](const Pyramid& p) { return p.pose.body; }, "Number of the body it is of; 0: the world.")
         .def_readonly("counts", &Pyramid::counts)
         .def_readonly("faces", &Pyramid::faces, "1, or 6 from the second level on: seen through -x +x -y +y -z +z.")
         .def_readonly("scale", &Pyramid::scale, "Radiance of a stored 1.")
@@ -217,6 +244,15 @@ void bind_pyramid(py::module_& m) {
         .def(
             "level", &read_level, py::arg("index"), py::arg("face") = 0,
             "(z, y, x, 4) float32, a copy: radiance premultiplied by opacity in W/(m^2 sr), and opacity. 0 is the finest level.");
+}
+
+/// The part of a scene that is one body's, in its own space where `pose` has it now; without a body, all of it.
+Scene part_of(const BoundScene& whole, const std::optional<std::uint32_t>& body, const py::object& pose) {
+    Scene part = whole.scene;
+    if (!body) return part;
+    const mat4 world_from_body = pose.is_none() ? mat4(1.0f) : matrix4(pose, "pose");
+    part.geometry = part_of_geometry(*part.geometry, *body, glm::inverse(world_from_body));
+    return part;
 }
 
 VoxelHistory history_of(
@@ -239,24 +275,34 @@ void bind_voxels(py::module_& m) {
     bind_stage(m, "prefilter", "What does a box of voxels look like from afar?", false, static_cast<Prefilter*>(nullptr));
     m.def(
         "voxelize",
-        [](const Voxelize& technique, const BoundScene& scene, const Domain& domain) {
+        [](const Voxelize& technique, const BoundScene& whole, const Domain& domain, const std::optional<std::uint32_t>& body,
+           const py::object& pose) {
+            const Scene scene = part_of(whole, body, pose);
             return run([&] {
-                return std::visit([&](const auto& t) { return std::make_shared<VoxelGrid>(voxelize(t, scene.scene, domain)); },
-                                  technique);
+                auto voxels =
+                    std::make_shared<VoxelGrid>(std::visit([&](const auto& t) { return voxelize(t, scene, domain); }, technique));
+                voxels->pose.body = body.value_or(0);
+                return voxels;
             });
         },
-        py::arg("technique"), py::arg("scene"), py::arg("domain"), "The voxels of the scene's surface.");
+        py::arg("technique"), py::arg("scene"), py::arg("domain"), py::arg("body") = py::none(), py::arg("pose") = py::none(),
+        "The voxels of the scene's surface; or of one body in its own space, which `pose` brings to the world (0: of what stands "
+        "still).");
     m.def(
         "light_voxels",
         [](const LightVoxels& technique, const BoundScene& scene, std::shared_ptr<const VoxelGrid> voxels, std::uint32_t seed,
-           const std::variant<std::monostate, std::shared_ptr<const Pyramid>, std::shared_ptr<const LitVoxels>>& history) {
-            const LightingTask task{scene.scene, *scene.intersector, *scene.lights, voxels, voxels, history_of(history), seed};
+           const std::variant<std::monostate, std::shared_ptr<const Pyramid>, std::shared_ptr<const LitVoxels>>& history,
+           const std::vector<std::shared_ptr<VoxelGrid>>& others) {
+            const LightingTask task{scene.scene, *scene.intersector,  *scene.lights, voxels,
+                                    voxels,      history_of(history), seed,          {others.begin(), others.end()}};
             return run([&] {
                 return std::visit([&](const auto& t) { return std::make_shared<LitVoxels>(light_voxels(t, task)); }, technique);
             });
         },
         py::arg("technique"), py::arg("scene"), py::arg("voxels"), py::arg("seed") = 0, py::arg("history") = py::none(),
-        "The radiance that each voxel reflects. history: the last frame's LitVoxels, or the Pyramid made from them.");
+        py::arg("others") = py::list(),
+        "The radiance that each voxel reflects. others: voxels of the scene's other parts. history: the last frame's LitVoxels, "
+        "or the Pyramid made from them.");
     m.def(
         "prefilter",
         [](const Prefilter& technique, std::shared_ptr<const LitVoxels> lit) {

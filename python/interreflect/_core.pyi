@@ -694,6 +694,11 @@ class VoxelGrid:
     def __len__(self) -> int:
         ...
 
+    def moved(self, body: typing.SupportsInt | typing.SupportsIndex, pose: typing.Any) -> VoxelGrid:
+        """
+        The voxels with their body, or a copy of it numbered `body`, at the (4, 4) pose `world_from_body`.
+        """
+
     @property
     def albedo(self) -> typing.Any:
         """
@@ -704,6 +709,12 @@ class VoxelGrid:
     def area(self) -> typing.Any:
         """
         (n,): area of the solid surface inside, in faces of an unwarped voxel of the finest grid.
+        """
+
+    @property
+    def body(self) -> int:
+        """
+        Number of the body whose voxels these are, in its own space; 0: the world.
         """
 
     @property
@@ -795,6 +806,12 @@ class Pyramid:
     def level(self, index: typing.SupportsInt | typing.SupportsIndex, face: typing.SupportsInt | typing.SupportsIndex=0) -> numpy.typing.NDArray[numpy.float32]:
         """
         (z, y, x, 4) float32, a copy: radiance premultiplied by opacity in W/(m^2 sr), and opacity. 0 is the finest level.
+        """
+
+    @property
+    def body(self) -> int:
+        """
+        Number of the body it is of; 0: the world.
         """
 
     @property
@@ -1888,15 +1905,15 @@ def cone_step_rate(repeats: typing.SupportsInt | typing.SupportsIndex) -> float:
     """
     Million steps of cones a second, each two trilinear look-ups in a pyramid of half floats; best of `repeats`.
     """
-def glossy(technique: TracedRays | GlossyCone, pyramid: Pyramid, gbuffer: GBuffer, scene: Scene, seed: typing.SupportsInt | typing.SupportsIndex) -> GlossyLight:
+def glossy(technique: TracedRays | GlossyCone, pyramids: collections.abc.Sequence[Pyramid], gbuffer: GBuffer, scene: Scene, seed: typing.SupportsInt | typing.SupportsIndex) -> GlossyLight:
     """
     Light that the glossy lobe reflects.
     """
-def light_voxels(technique: TracedLighting | ShadowMapInjection | ConeLighting | Bounces | BlendHistory, scene: Scene, voxels: VoxelGrid, seed: typing.SupportsInt | typing.SupportsIndex=0, history: None | Pyramid | LitVoxels=None) -> LitVoxels:
+def light_voxels(technique: TracedLighting | ShadowMapInjection | ConeLighting | Bounces | BlendHistory, scene: Scene, voxels: VoxelGrid, seed: typing.SupportsInt | typing.SupportsIndex=0, history: None | Pyramid | LitVoxels=None, others: collections.abc.Sequence[VoxelGrid]=[]) -> LitVoxels:
     """
-    The radiance that each voxel reflects. history: the last frame's LitVoxels, or the Pyramid made from them.
+    The radiance that each voxel reflects. others: voxels of the scene's other parts. history: the last frame's LitVoxels, or the Pyramid made from them.
     """
-def march(technique: TracedRays | DiffuseCones, pyramid: Pyramid, gbuffer: GBuffer, scene: Scene, share: EveryPixel | Interleaved, seed: typing.SupportsInt | typing.SupportsIndex) -> GatheredLight:
+def march(technique: TracedRays | DiffuseCones, pyramids: collections.abc.Sequence[Pyramid], gbuffer: GBuffer, scene: Scene, share: EveryPixel | Interleaved, seed: typing.SupportsInt | typing.SupportsIndex) -> GatheredLight:
     """
     Light that arrives over the hemisphere at the pixels.
     """
@@ -1956,7 +1973,7 @@ def vector_bytes() -> int:
     """
     Bytes of the widest vectors of this machine.
     """
-def voxelize(technique: ExactOverlap | SurfaceSampling | Rasterization | Tessellation, scene: Scene, domain: Domain) -> VoxelGrid:
+def voxelize(technique: ExactOverlap | SurfaceSampling | Rasterization | Tessellation, scene: Scene, domain: Domain, body: typing.SupportsInt | typing.SupportsIndex | None=None, pose: typing.Any | None=None) -> VoxelGrid:
     """
-    The voxels of the scene's surface.
+    The voxels of the scene's surface; or of one body in its own space, which `pose` brings to the world (0: of what stands still).
     """

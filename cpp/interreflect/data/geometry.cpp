@@ -165,4 +165,18 @@ std::shared_ptr<const Geometry> move_geometry(const Geometry& geometry, std::spa
     return moved;
 }
 
+std::shared_ptr<const Geometry> part_of_geometry(const Geometry& geometry, std::uint32_t body, const mat4& body_from_world) {
+    auto part = std::make_shared<Geometry>();
+    part->arrays = geometry.arrays;
+    part->groups = geometry.groups;
+    for (const Instance& instance : geometry.instances) {
+        if (instance.body != body) continue;
+        Placement placement;
+        placement.body = body;
+        placement.world_from_local = body_from_world * mat4(instance.world_from_local);
+        part->instances.push_back(body == 0 ? instance : make_instance(instance.group, placement));
+    }
+    return part;
+}
+
 }  // namespace interreflect

@@ -76,6 +76,10 @@ std::shared_ptr<const Geometry> make_geometry(std::span<const MeshView> meshes, 
 /// order.
 std::shared_ptr<const Geometry> move_geometry(const Geometry& geometry, std::span<const Placement> placements);
 
+/// The same arrays with the instances of one body alone, in the body's own space: body_from_world is rigid. Of body 0, what
+/// belongs to no body. Not for ray hierarchies, which expect instance 0 to be what stands still.
+std::shared_ptr<const Geometry> part_of_geometry(const Geometry& geometry, std::uint32_t body, const mat4& body_from_world);
+
 /// The three corners of a triangle in world space.
 struct Corners {
     vec3 a, b, c;

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "data/body_pose.h"
 #include "data/buffer.h"
 #include "data/counts.h"
 #include "data/domain.h"
@@ -23,8 +24,12 @@ struct VoxelPoint {
 };
 
 /// The voxels that the surface passes through, in ascending order of their cell, in parallel arrays.
+///
+/// Of a body, `domain` and cells lie in the body's own space and stay as they are while it moves; positions and normals are those
+/// in the world at `pose`.
 struct VoxelGrid {
     Domain domain;
+    BodyPose pose;
     Buffer<std::uint32_t> cell;  // as Domain::cell numbers them
     Buffer<vec3> albedo;         // mean diffuse reflectance of the solid samples
     Buffer<vec3> normal;         // mean of the front sides' normals: unit, or (0, 0, 0) where they cancel
@@ -65,7 +70,8 @@ struct LitVoxels {
 /// one (a wall at the domain's edge stays as opaque as inside). So a trilinear tap at q texels (q = voxels / 2^i), with
 /// b = floor(q - 0.5), reads the texels b and b + 1 without any clamping: four 16-byte loads of two neighbours in x, at
 /// index(b), index(b + y), index(b + z) and index(b + y + z). Valid wherever -0.5 <= q < size + 0.5, so nothing must be clamped
-/// inside the domain or within half a finest voxel of it.
+/// inside the domain or within half a finest voxel of it. Of a body (see `pose`) the borders are air, as all around it is, and
+/// single texels go on growing after the level that is one texel: cones wider than the body see it thinned out.
 ///
 /// A level is dense, or it has bricks: only its texels that are not air are then kept, after one that is, in ascending order of
 /// their place (x fastest), and the bricks say which is where.
@@ -80,6 +86,7 @@ struct Pyramid {
     struct Level {
         ivec3 size{0}, origin{0};
         int faces = 1;
+        bool open = false;  // borders are air
         Buffer<std::uint16_t> texels;
         TexelBricks bricks{};
 
@@ -99,6 +106,7 @@ struct Pyramid {
         }
     };
     Domain domain;
+    BodyPose pose;
     int faces = 1;       // of every level but the finest
     float scale = 1.0f;  // radiance = texel * scale: a power of two that keeps every radiance within half floats
     std::vector<Level> levels;
@@ -111,5 +119,8 @@ struct Pyramid {
         return sum;
     }
 };
+
+/// The pyramids of a scene's parts: of what stands still and of bodies, in any order.
+using Pyramids = std::span<const Pyramid* const>;
 
 }  // namespace interreflect

@@ -1,6 +1,6 @@
 /// Glossy: what does the pixels' glossy lobe reflect towards the camera, of the voxels and of the environment?
 ///
-///   GlossyLight glossy(const Technique&, const Pyramid&, const GBuffer&, const Scene&, const Intersector&, seed);
+///   GlossyLight glossy(const Technique&, Pyramids, const GBuffer&, const Scene&, const Intersector&, seed);
 ///
 /// Only pixels with a specular reflectance are visited. The G-buffer says which lobe they have (stage shade). Exact counterpart:
 /// TracedRays.

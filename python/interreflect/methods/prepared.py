@@ -87,9 +87,11 @@ class Prepared:
         return f"{self.method!r} {self.scene.still_hash}"
 
     def save(self, path: str | Path) -> None:
-        """Writes what was precomputed, with the geometry, materials and knobs it belongs to."""
+        """Writes the arrays that were precomputed, with the geometry, materials and knobs they belong to; a method makes what else it
+        keeps anew when it is missing."""
+        arrays: dict[str, Any] = {key: value for key, value in self.state.items() if isinstance(value, np.ndarray)}
         with Path(path).open("wb") as file:
-            np.savez(file, key=np.array(self._key()), milliseconds=np.array(self.precompute_milliseconds), **self.state)
+            np.savez(file, key=np.array(self._key()), milliseconds=np.array(self.precompute_milliseconds), **arrays)
 
     @staticmethod
     def load(path: str | Path, method: Method, scene: Scene) -> Prepared:

@@ -30,7 +30,7 @@ Counts add_light(DirectLight& result, int number, const TilePixels& pixels, cons
         if (!(max_component(radiance) > 0.0f)) continue;
         reflected[cones.size()] = radiance;
         target[cones.size()] = pixel;
-        cones.push_back({g.position[pixel], g.geometric_normal[pixel], light.direction, light.distance});
+        cones.push_back({g.position[pixel], g.geometric_normal[pixel], light.direction, light.distance, g.body[pixel]});
     }
     const Counts counts = shadows.open(cones, std::span<float>(open).first(cones.size()));
     for (std::size_t i = 0; i < cones.size(); ++i) result.radiance[target[i]] += reflected[i] * open[i];

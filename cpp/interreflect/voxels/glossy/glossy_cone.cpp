@@ -7,9 +7,9 @@
 #include "math/parallel.h"
 #include "shading/pixel_lobe.h"
 #include "voxels/glossy/lobe_table.h"
+#include "voxels/march/cone_caster.h"
 #include "voxels/march/cone_environment.h"
 #include "voxels/march/gather.h"
-#include "voxels/march/march_cones.h"
 
 namespace interreflect {
 namespace {
@@ -22,18 +22,16 @@ constexpr float widest_freed = 9.0f;  // 0.1 pi is a full aperture of 18 degrees
 /// One pixel's cone.
 struct Reflection {
     int pixel, width;
-    vec3 surface, direction, albedo;  // surface: linear voxels
+    vec3 direction, albedo;
 };
 
 struct Work {
-    const Pyramid& pyramid;
     const GBuffer& gbuffer;
     const Scene& scene;
     const GlossyCone& technique;
-    AirMap air;
     float degrees_a_width = 0;
-    const LobeTable* tables[lobe_count] = {};  // by lobe; null where no material has it
-    std::vector<ConeSchedule> schedules = {};
+    const LobeTable* tables[lobe_count] = {};        // by lobe; null where no material has it
+    std::vector<ConeCaster> casters = {};            // by width
     std::vector<ConeEnvironment> environments = {};  // of cones 0, 15, 30, 45, 60 degrees wide (half angle)
 
     bool reflects(int pixel) const { return gbuffer.hit(pixel) && max_component(gbuffer.specular[pixel]) > 0.0f; }
@@ -49,55 +47,38 @@ struct Work {
     }
 };
 
-/// A pixel's lobe from where it is seen.
-struct SeenLobe {
-    vec3 view;
-    float cosine;  // between normal and view
-    Lobe lobe;
-    LobeCone cone;
-
-    SeenLobe(const Work& work, int pixel) {
-        const GBuffer& g = work.gbuffer;
-        view = glm::normalize(g.camera.position - g.position[pixel]);
-        cosine = std::max(glm::dot(g.normal[pixel], view), 0.0f);
-        lobe = lobe_at(g, work.scene.materials[work.scene.material_of(g.triangle[pixel])], pixel).lobe;
-        cone = work.tables[static_cast<int>(lobe)]->at(g.alpha[pixel], cosine);
-    }
-    vec3 albedo(const vec3& specular) const {
-        return specular * cone.scale + (vec3(1) - specular) * (has_microfacets(lobe) ? cone.bias : 0.0f);
-    }
-};
-
 Reflection reflect(const Work& work, int pixel) {
     const GBuffer& g = work.gbuffer;
-    const SeenLobe seen(work, pixel);
-    const vec3 normal = g.normal[pixel];
-    const vec3 across = normal * seen.cosine - seen.view;  // the mirrored view's part along the surface
+    const vec3 normal = g.normal[pixel], view = glm::normalize(g.camera.position - g.position[pixel]);
+    const float cosine = std::fmax(glm::dot(normal, view), 0.0f);
+    const Lobe lobe = lobe_at(g, work.scene.materials[work.scene.material_of(g.triangle[pixel])], pixel).lobe;
+    const LobeCone cone = work.tables[static_cast<int>(lobe)]->at(g.alpha[pixel], cosine);
+    const vec3 across = normal * cosine - view;  // the mirrored view's part along the surface
     const float length = glm::length(across);
     const vec3 tangent = length > 1e-6f ? across / length : Frame(normal).tangent;
-    const vec2 mean = work.technique.aperture == "freed" ? vec2(length, seen.cosine) : seen.cone.direction;
-    return {pixel, work.width_of(seen.cone, g.alpha[pixel]), work.pyramid.domain.to_linear(g.position[pixel]),
-            glm::normalize(tangent * mean.x + normal * mean.y), seen.albedo(g.specular[pixel])};
+    const vec2 mean = work.technique.aperture == "freed" ? vec2(length, cosine) : cone.direction;
+    const vec3 specular = g.specular[pixel];
+    return {pixel, work.width_of(cone, g.alpha[pixel]), glm::normalize(tangent * mean.x + normal * mean.y),
+            specular * cone.scale + (vec3(1) - specular) * (has_microfacets(lobe) ? cone.bias : 0.0f)};
 }
 
 /// Marches reflections of one width.
 Counts march_width(const Work& work, std::span<const Reflection> cones, ConeBatch& batch, Buffer<vec4>& voxels,
                    Buffer<vec4>& sky) {
-    batch.count = static_cast<int>(cones.size());
-    const auto offset = static_cast<float>(work.technique.normal_offset), cut_off = static_cast<float>(work.technique.cut_off);
-    for (int i = 0; i < batch.count; ++i) {
-        const vec3 normal = work.gbuffer.geometric_normal[cones[i].pixel];
-        set_start(batch, i, work.pyramid.domain, cones[i].surface, normal, offset, work.technique.own_surface);
-        set_direction(batch, i, cones[i].direction);
+    thread_local std::vector<ConeCaster::Cone> sent;
+    sent.clear();
+    const GBuffer& g = work.gbuffer;
+    for (const Reflection& one : cones) {
+        ConeCaster::Cone cone{g.position[one.pixel], g.geometric_normal[one.pixel], one.direction};
+        cone.body = g.body[one.pixel];
+        sent.push_back(cone);
     }
-    const ConeCounts done = march_cones(work.pyramid, work.air, work.schedules[cones.front().width], cut_off, batch);
+    const Counts counts = work.casters[cones.front().width].cast(sent, batch);
     if (work.technique.multiply_by_occlusion) multiply_by_openness(batch);
     for (int i = 0; i < batch.count; ++i) {
         voxels[cones[i].pixel] = vec4(vec3(batch.r[i], batch.g[i], batch.b[i]) * cones[i].albedo, 0);
         sky[cones[i].pixel] = vec4(work.sky(cones[i], cones[i].direction) * cones[i].albedo * batch.open[i], 0);
     }
-    Counts counts;
-    counts.cones = cones.size(), counts.cone_steps = done.steps, counts.voxel_fetches = done.fetches;
     return counts;
 }
 
@@ -156,7 +137,7 @@ Counts finish_shared(const Work& work, const Tile& tile, Buffer<vec4>& voxels, B
         if (!work.reflects(pixel)) {
             voxels[pixel] = sky[pixel] = vec4(0);
         } else if (alike) {
-            const vec3 albedo = SeenLobe(work, pixel).albedo(work.gbuffer.specular[pixel]) / lobes;
+            const vec3 albedo = reflect(work, pixel).albedo / lobes;
             voxels[pixel] *= vec4(albedo, 0);
             sky[pixel] *= vec4(albedo, 0);
         } else {
@@ -166,8 +147,9 @@ Counts finish_shared(const Work& work, const Tile& tile, Buffer<vec4>& voxels, B
     return march_reflections(work, alone, voxels, sky);
 }
 
-Work prepare(const GlossyCone& technique, const Pyramid& pyramid, const GBuffer& gbuffer, const Scene& scene) {
-    Work work{.pyramid = pyramid, .gbuffer = gbuffer, .scene = scene, .technique = technique, .air = AirMap(pyramid)};
+Work prepare(const GlossyCone& technique, Pyramids pyramids, const GBuffer& gbuffer, const Scene& scene) {
+    Work work{.gbuffer = gbuffer, .scene = scene, .technique = technique};
+    const auto hierarchies = std::make_shared<const Hierarchies>(pyramids);
     work.degrees_a_width = technique.half_angle > 0.0 ? static_cast<float>(technique.half_angle)
                                                       : (technique.aperture == "freed" ? widest_freed : widest) / (widths - 1);
     for (const auto& material : scene.materials)
@@ -176,20 +158,19 @@ Work prepare(const GlossyCone& technique, const Pyramid& pyramid, const GBuffer&
             work.tables[static_cast<int>(lobe)] = &lobe_table(lobe);
         }
     for (int width = 0; width < (technique.half_angle > 0.0 ? 2 : widths); ++width)
-        work.schedules.push_back(
-            make_schedule(technique.shape(static_cast<float>(width) * work.degrees_a_width * degrees_to_radians), pyramid));
+        work.casters.emplace_back(hierarchies, technique, static_cast<float>(width) * work.degrees_a_width * degrees_to_radians);
     for (int i = 0; i <= 4; ++i) work.environments.emplace_back(scene, static_cast<float>(i) * 15.0f * degrees_to_radians);
     return work;
 }
 
 }  // namespace
 
-GlossyLight glossy(const GlossyCone& technique, const Pyramid& pyramid, const GBuffer& gbuffer, const Scene& scene,
-                   const Intersector&, std::uint32_t) {
+GlossyLight glossy(const GlossyCone& technique, Pyramids pyramids, const GBuffer& gbuffer, const Scene& scene, const Intersector&,
+                   std::uint32_t) {
     Buffer<vec4> voxels(gbuffer.pixels()), sky(gbuffer.pixels());
     const int columns = (gbuffer.width + tile_size - 1) / tile_size, rows = (gbuffer.height + tile_size - 1) / tile_size;
     std::vector<Counts> counts(static_cast<std::size_t>(columns) * rows);
-    const Work work = prepare(technique, pyramid, gbuffer, scene);
+    const Work work = prepare(technique, pyramids, gbuffer, scene);
     const Block block = block_of(technique.share);
     const auto each_tile = [&](const auto& march) {
         parallel_tiles(gbuffer.width, gbuffer.height, tile_size, [&](const Tile& tile) { counts[tile.index] += march(tile); });
@@ -204,7 +185,7 @@ GlossyLight glossy(const GlossyCone& technique, const Pyramid& pyramid, const GB
         sky = merge(technique.share, gbuffer, weights, std::move(sky));
         each_tile([&](const Tile& tile) { return finish_shared(work, tile, voxels, sky); });
     }
-    return finish_glossy(gbuffer, voxels, pyramid.scale, sky, counts);
+    return finish_glossy(gbuffer, voxels, pyramids.front()->scale, sky, counts);
 }
 
 }  // namespace interreflect

@@ -42,7 +42,7 @@ struct GlossyCone : MarchKnobs, OcclusionKnob {
         MarchKnobs::params, OcclusionKnob::params);
 };
 
-GlossyLight glossy(const GlossyCone& technique, const Pyramid& pyramid, const GBuffer& gbuffer, const Scene& scene,
+GlossyLight glossy(const GlossyCone& technique, Pyramids pyramids, const GBuffer& gbuffer, const Scene& scene,
                    const Intersector& intersector, std::uint32_t seed);
 
 }  // namespace interreflect

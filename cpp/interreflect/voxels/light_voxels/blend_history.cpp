@@ -38,6 +38,7 @@ Buffer<Item> chosen_of(const Buffer<Item>& all, std::span<const std::uint32_t> c
 std::shared_ptr<const VoxelGrid> part_of(const VoxelGrid& grid, std::span<const std::uint32_t> chosen) {
     auto part = std::make_shared<VoxelGrid>();
     part->domain = grid.domain;
+    part->pose = grid.pose;
     part->cell = chosen_of(grid.cell, chosen);
     part->albedo = chosen_of(grid.albedo, chosen);
     part->normal = chosen_of(grid.normal, chosen);

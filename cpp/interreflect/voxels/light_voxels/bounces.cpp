@@ -47,7 +47,8 @@ LitVoxels light_voxels(const Bounces& technique, const LightingTask& task) {
     const Pyramid& last = *task.last.pyramid;
     const VoxelGrid& grid = *task.voxels;
     const ConeSet set = cosine_cones(technique.cones, 0.0f);
-    const ConeCaster caster(last, technique, set.half_angle);
+    const Pyramid* const pyramids[] = {&last};
+    const ConeCaster caster(pyramids, technique, set.half_angle);
     std::vector<Counts> counts((grid.size() + capacity - 1) / capacity);
     parallel_blocks(grid.size(), capacity, [&](std::size_t begin, std::size_t end) {
         Counts& done = counts[begin / capacity];

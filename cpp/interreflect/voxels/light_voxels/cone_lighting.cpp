@@ -92,7 +92,7 @@ class SideBlock {
 
   private:
     void aim(std::size_t k, const vec3& direction, float distance = std::numeric_limits<float>::infinity()) {
-        cones_.push_back({grid_.position[first_ + k], normal_[k], direction, distance});
+        cones_.push_back({grid_.position[first_ + k], normal_[k], direction, distance, grid_.pose.body});
         target_.push_back(k);
     }
     void queue(std::size_t k, const vec3& direction, float distance, const vec3& irradiance) {
@@ -127,11 +127,14 @@ class SideBlock {
 
 LitVoxels light_voxels(const ConeLighting& technique, const LightingTask& task) {
     const VoxelGrid& grid = *task.voxels;
-    const Pyramid opacity = opacity_of(task.occluders);
-    const Pyramid* const pyramids[] = {&opacity};
+    std::vector<Pyramid> opacities;
+    opacities.push_back(opacity_of(task.occluders));
+    for (const auto& other : task.others) opacities.push_back(opacity_of(other));
+    std::vector<const Pyramid*> pyramids;
+    for (const Pyramid& opacity : opacities) pyramids.push_back(&opacity);
     const ShadowCones shadows(pyramids, technique, static_cast<float>(technique.half_angle) * degrees_to_radians);
     const ConeSet sky = cosine_cones(technique.sky_cones, 0.0f);
-    const ConeCaster sky_caster(opacity, technique, sky.half_angle);
+    const ConeCaster sky_caster(pyramids, technique, sky.half_angle);
     const ConeEnvironment environment(task.scene, sky.half_angle);
 
     LitVoxels lit;

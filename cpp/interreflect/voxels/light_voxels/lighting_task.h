@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <vector>
 
 #include "data/scene.h"
 #include "data/voxel_grid.h"
@@ -24,6 +25,7 @@ struct LightingTask {
     std::shared_ptr<const VoxelGrid> occluders;  // every voxel of the scene: `voxels`, or more
     VoxelHistory last;
     std::uint32_t seed = 0;
+    std::vector<std::shared_ptr<const VoxelGrid>> others = {};  // of the scene's other parts, which block light too
 };
 
 }  // namespace interreflect

@@ -16,7 +16,7 @@ constexpr float bias = 1.0f;
 /// A bit for every cell of a domain, set from all threads.
 class CellBits {
   public:
-    explicit CellBits(const Domain& domain) : domain_(domain), words_((domain.cell_count() + 31) / 32) {}
+    explicit CellBits(const VoxelGrid& grid) : grid_(grid), words_((grid.domain.cell_count() + 31) / 32) {}
 
     /// The cells just before and just behind a hit of a ray: rounding may have put it across a voxel's face.
     void set_around(const vec3& hit, const vec3& nudge) {
@@ -30,10 +30,12 @@ class CellBits {
   private:
     /// Domain::locate, without its call where there is nothing to warp: hundreds of thousands of texels ask.
     bool find(const vec3& position, std::uint32_t& cell) const {
-        if (!plain_) return domain_.locate(position, cell);
-        const vec3 voxels = domain_.to_linear(position);
-        if (!domain_.inside(voxels)) return false;
-        cell = domain_.cell(ivec3(voxels));
+        const Domain& domain = grid_.domain;
+        const vec3 place = grid_.pose.to_body(position);
+        if (!plain_) return domain.locate(place, cell);
+        const vec3 voxels = domain.to_linear(place);
+        if (!domain.inside(voxels)) return false;
+        cell = domain.cell(ivec3(voxels));
         return true;
     }
     void set(std::uint32_t cell) {
@@ -42,8 +44,8 @@ class CellBits {
         if ((word.load(std::memory_order_relaxed) & bit) == 0) word.fetch_or(bit, std::memory_order_relaxed);
     }
 
-    const Domain& domain_;
-    bool plain_ = domain_.plain();
+    const VoxelGrid& grid_;
+    bool plain_ = grid_.domain.plain();
     std::vector<std::atomic<std::uint32_t>> words_;
 };
 
@@ -68,7 +70,7 @@ struct InjectedLight {
     CellBits cells;
 
     InjectedLight(const LightingTask& task, int number, int size)
-        : maps(views_of_light(task.scene, number, size), task.intersector), cells(task.voxels->domain) {
+        : maps(views_of_light(task.scene, number, size), task.intersector), cells(*task.voxels) {
         for (const DepthMap& map : maps.maps) mark(map, task.voxels->domain, cells);
     }
 };

@@ -13,11 +13,11 @@ constexpr float longest_step = 2.0f;  // diameters, that `step_growth` leads to
 /// A schedule as it grows. Lengths in voxels.
 class Walk {
   public:
-    Walk(const ConeShape& shape, const Pyramid& pyramid)
+    Walk(const ConeShape& shape, const Pyramid& pyramid, float way)
         : shape_(shape),
           slope_(2.0f * std::tan(shape.half_angle)),
           ratio_(shape.step),
-          end_(pyramid.domain.longest_way() + 2.0f),
+          end_(way),
           coarsest_(static_cast<float>(pyramid.levels.size() - 1)) {}
 
     /// From where the cone is `diameter` wide, `begin` along it. A cone of half angle 0 still advances: its diameter never
@@ -96,7 +96,11 @@ class Walk {
 }  // namespace
 
 ConeSchedule make_schedule(const ConeShape& shape, const Pyramid& pyramid) {
-    Walk walk(shape, pyramid);
+    return make_schedule(shape, pyramid, pyramid.domain.longest_way() + 2.0f);
+}
+
+ConeSchedule make_schedule(const ConeShape& shape, const Pyramid& pyramid, float way) {
+    Walk walk(shape, pyramid, way);
     if (shape.start == ConeShape::Start::height) {
         walk.walk_from_apex(shape.start_height);
     } else if (shape.start == ConeShape::Start::rays) {

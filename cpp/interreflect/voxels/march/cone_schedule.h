@@ -38,13 +38,14 @@ struct ConeSchedule {
     bool opacity_correction = true;  // whether a step's opacity depends on its length
 };
 
-/// Steps until the cone has left any domain of the pyramid's size. Where the domain is warped, lengths are in voxels as they are
-/// at the cone's start. The diameter starts at `first_diameter` and the first sample
-/// lies half a step away; distance and level then grow by one multiplication and one addition a step [Rehfeld et al. 2014, 4].
-/// There `alpha` must be the half angle (ERRATA). Starting as rays, steps are those of a cone one voxel wide until it is.
+/// Steps until the cone has left any domain of the pyramid's size, or has come `way` voxels far. Where the
+/// domain is warped, lengths are in voxels as they are at the cone's start. The diameter starts at `first_diameter` and the first
+/// sample lies half a step away; distance and level then grow by one multiplication and one addition a step [Rehfeld et al. 2014,
+/// 4]. There `alpha` must be the half angle (ERRATA). Starting as rays, steps are those of a cone one voxel wide until it is.
 /// Starting at a height, samples lie at the beginning of their steps [Freed 2018, listing 4.1]; steps are no shorter than those
 /// of `first_diameter`, lest a cone of half angle 0 never advance (ERRATA). A step's opacity is 1 - (1 - a)^(its length in
 /// texels); the listing blends a.
 ConeSchedule make_schedule(const ConeShape& shape, const Pyramid& pyramid);
+ConeSchedule make_schedule(const ConeShape& shape, const Pyramid& pyramid, float way);
 
 }  // namespace interreflect

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "math/parallel.h"
+#include "voxels/march/cone_caster.h"
 #include "voxels/march/cone_environment.h"
 #include "voxels/march/cone_set.h"
 #include "voxels/march/gather.h"
@@ -26,11 +27,12 @@ ConeSet choose_set(const DiffuseCones& technique) {
 
 /// Everything that all tiles share.
 struct Work {
-    const Pyramid& pyramid;
+    const Hierarchies& hierarchies;
+    const ConeCaster& caster;  // through several of them
+    const Pyramid& pyramid;    // the first
     const GBuffer& gbuffer;
     ConeSet set;
     ConeSchedule schedule;
-    AirMap air;
     ConeEnvironment environment;
     Block block;
     float normal_offset, cut_off;
@@ -57,6 +59,27 @@ void turn_cones(const Receivers& from, const vec3& cone, ConeBatch& batch) {
                 from.per_axis[row][0][i] * cone.x + from.per_axis[row][1][i] * cone.y + from.per_axis[row][2][i] * cone.z;
 }
 
+/// Cones in the directions of `batch`, through several hierarchies.
+Counts cast(const Work& work, const Receivers& from, ConeBatch& batch) {
+    thread_local std::vector<ConeCaster::Cone> cones;
+    cones.resize(static_cast<std::size_t>(from.count));
+    for (int i = 0; i < from.count; ++i) {
+        ConeCaster::Cone& cone = cones[static_cast<std::size_t>(i)];
+        for (int k = 0; k < 3; ++k) cone.position[k] = from.position[k][i], cone.normal[k] = from.facing[k][i];
+        cone.direction = {batch.dx[i], batch.dy[i], batch.dz[i]};
+        cone.body = work.gbuffer.body[static_cast<std::size_t>(from.pixel[i])];
+    }
+    return work.caster.cast(cones, batch);
+}
+
+Counts march_cones(const Work& work, const Receivers& from, ConeBatch& batch) {
+    if (!work.hierarchies.alone()) return cast(work, from, batch);
+    const ConeCounts done = march_cones(work.pyramid, work.hierarchies.air(0), work.schedule, work.cut_off, batch);
+    Counts counts;
+    counts.cones = static_cast<std::uint64_t>(batch.count), counts.cone_steps = done.steps, counts.voxel_fetches = done.fetches;
+    return counts;
+}
+
 void add_results(const Work& work, const ConeBatch& batch, float weight, Receivers& to) {
     const float* const rows[4] = {batch.r, batch.g, batch.b, batch.open};
     for (int row = 0; row < 4; ++row)
@@ -73,8 +96,7 @@ Counts march_phase(const Work& work, int phase, Receivers& receivers, ConeBatch&
     Counts counts;
     for (std::size_t c = phase; c < work.set.cones.size(); c += work.block.phases()) {
         turn_cones(receivers, work.set.cones[c].direction, batch);
-        const ConeCounts done = march_cones(work.pyramid, work.air, work.schedule, work.cut_off, batch);
-        counts.cones += batch.count, counts.cone_steps += done.steps, counts.voxel_fetches += done.fetches;
+        counts += march_cones(work, receivers, batch);
         if (work.multiply_by_occlusion) multiply_by_openness(batch);
         add_results(work, batch, work.set.cones[c].weight, receivers);
     }
@@ -88,14 +110,18 @@ Counts march_phase(const Work& work, int phase, Receivers& receivers, ConeBatch&
 
 }  // namespace
 
-GatheredLight march(const DiffuseCones& technique, const Pyramid& pyramid, const GBuffer& gbuffer, const Scene& scene,
+GatheredLight march(const DiffuseCones& technique, Pyramids pyramids, const GBuffer& gbuffer, const Scene& scene,
                     const Intersector&, const Share& share, std::uint32_t) {
     const ConeSet set = choose_set(technique);
-    const Work work{pyramid,
+    const auto hierarchies = std::make_shared<const Hierarchies>(pyramids);
+    const ConeCaster caster(hierarchies, technique, set.half_angle);
+    const Pyramid& pyramid = hierarchies->pyramid(0);
+    const Work work{*hierarchies,
+                    caster,
+                    pyramid,
                     gbuffer,
                     set,
                     make_schedule(technique.shape(set.half_angle), pyramid),
-                    AirMap(pyramid),
                     ConeEnvironment(scene, set.half_angle),
                     block_of(share),
                     static_cast<float>(technique.normal_offset),

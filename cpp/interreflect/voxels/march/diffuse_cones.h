@@ -35,7 +35,7 @@ struct DiffuseCones : MarchKnobs, OcclusionKnob {
                  MarchKnobs::params, OcclusionKnob::params);
 };
 
-GatheredLight march(const DiffuseCones& technique, const Pyramid& pyramid, const GBuffer& gbuffer, const Scene& scene,
+GatheredLight march(const DiffuseCones& technique, Pyramids pyramids, const GBuffer& gbuffer, const Scene& scene,
                     const Intersector& intersector, const Share& share, std::uint32_t seed);
 
 }  // namespace interreflect

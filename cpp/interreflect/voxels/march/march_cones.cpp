@@ -1,5 +1,7 @@
 #include "voxels/march/march_cones.h"
 
+#include <cmath>
+
 #include "voxels/march/march_warped.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -19,6 +21,35 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
+/// Where a level of a body's pyramid can be tapped: beyond that, it is air.
+struct OpenLevel {
+    float lower, upper_x, upper_y, upper_z;
+
+    OpenLevel(const Pyramid& pyramid, int number) {
+        const Pyramid::Level& level = pyramid.levels[static_cast<std::size_t>(number)];
+        const auto texel = static_cast<float>(1 << number);
+        lower = -0.5f * texel;
+        upper_x = (static_cast<float>(level.size.x) + 0.4995f) * texel;
+        upper_y = (static_cast<float>(level.size.y) + 0.4995f) * texel;
+        upper_z = (static_cast<float>(level.size.z) + 0.4995f) * texel;
+    }
+    template <class D, class V = hn::Vec<D>>
+    HWY_INLINE hn::Mask<D> holds(D d, V x, V y, V z) const {
+        const V low = hn::Set(d, lower);
+        const auto above = hn::And(hn::And(hn::Gt(x, low), hn::Gt(y, low)), hn::Gt(z, low));
+        return hn::And(above, hn::And(hn::And(hn::Lt(x, hn::Set(d, upper_x)), hn::Lt(y, hn::Set(d, upper_y))),
+                                      hn::Lt(z, hn::Set(d, upper_z))));
+    }
+    template <class D, class V = hn::Vec<D>>
+    HWY_INLINE hn::Mask<D> place(D d, const LevelView& level, V x, V y, V z, Taps& taps) const {
+        const V low = hn::Set(d, lower);
+        const auto within = [&](V p, float upper) HWY_ATTR { return hn::Min(hn::Max(p, low), hn::Set(d, upper)); };
+        return place_taps(d, level, within(x, upper_x), within(y, upper_y), within(z, upper_z), taps);
+    }
+};
+
+/// `merged`: as ConeBatch has it. `body`: of a body's pyramid, whose borders are air.
+template <bool merged, bool body>
 ConeCounts march_batch(const Pyramid& pyramid, const AirMap& air, const ConeSchedule& schedule, float cut_off, ConeBatch& batch) {
     const hn::ScalableTag<float> d;
     using V = hn::Vec<decltype(d)>;
@@ -34,6 +65,15 @@ ConeCounts march_batch(const Pyramid& pyramid, const AirMap& air, const ConeSche
         const V px = hn::Load(d, batch.x + first), py = hn::Load(d, batch.y + first), pz = hn::Load(d, batch.z + first);
         const V dx = hn::Load(d, batch.dx + first), dy = hn::Load(d, batch.dy + first), dz = hn::Load(d, batch.dz + first);
         const V exit = hn::Min(hn::Min(exit_distance(d, px, dx, sx), exit_distance(d, py, dy, sy)), exit_distance(d, pz, dz, sz));
+        V entry = zero, blocked_depth = zero, last = exit;
+        if constexpr (body) {
+            const float radius = 0.5f * std::sqrt(sx * sx + sy * sy + sz * sz);
+            const auto ahead = [&](V p, V direction, float size)
+                                   HWY_ATTR { return hn::Mul(hn::Sub(hn::Set(d, 0.5f * size), p), direction); };
+            last = hn::Add(hn::Add(hn::Add(ahead(px, dx, sx), ahead(py, dy, sy)), ahead(pz, dz, sz)), hn::Set(d, radius));
+        } else if constexpr (merged) {
+            entry = hn::Max(hn::Max(entry_distance(d, px, dx, sx), entry_distance(d, py, dy, sy)), entry_distance(d, pz, dz, sz));
+        }
         auto active = hn::FirstN(d, static_cast<std::size_t>(batch.count - first < lanes ? batch.count - first : lanes));
         const V nx = hn::Load(d, batch.nx + first), ny = hn::Load(d, batch.ny + first), nz = hn::Load(d, batch.nz + first);
         const V height = hn::Load(d, batch.height + first), width = hn::Load(d, batch.width + first);
@@ -45,27 +85,40 @@ ConeCounts march_batch(const Pyramid& pyramid, const AirMap& air, const ConeSche
         alignas(64) int octants[max_lanes];
         store_octants(d, dx, dy, dz, octants);
         Taps fine, coarse;
+        // A body's texels may reach beyond its domain by almost their width, and taps by half of that, at the coarser level.
+        constexpr float reaches = body ? 3.0f : 1.0f;
         for (const auto& step : schedule.steps) {
             // A cone ends when its filter has left the domain; between that and its axis leaving, the border repeats the
             // outermost texels, so an outer wall closes as tightly as an inner one.
             const V distance = hn::Set(d, step.distance);
-            active = hn::And(active, hn::Lt(hn::Sub(distance, hn::Set(d, step.reach)), exit));
+            active = hn::And(active, hn::Lt(hn::Sub(distance, hn::Set(d, reaches * step.reach)), last));
             if (batch.limited)
                 active = hn::And(active, hn::Lt(hn::Add(distance, hn::Set(d, step.reach)), hn::Load(d, batch.limit + first)));
             if (hn::AllFalse(d, active)) break;
             const auto marching = static_cast<std::uint64_t>(hn::CountTrue(d, active));
             counts.steps += marching;
             const auto inside = [&](V p, V direction, float size) HWY_ATTR {
-                return hn::Min(hn::Max(hn::MulAdd(direction, distance, p), zero), hn::Set(d, size));
+                const V at = hn::MulAdd(direction, distance, p);
+                return body ? at : hn::Min(hn::Max(at, zero), hn::Set(d, size));
             };
             const V x = inside(px, dx, sx), y = inside(py, dy, sy), z = inside(pz, dz, sz);
             const LevelView& l0 = levels[step.level];
             const bool two = step.blend > 0.0f;
             const LevelView& l1 = levels[two ? step.level + 1 : step.level];
             // What is air to a coarser tap is air to the finer ones within it.
-            const auto seeing = hn::And(active, place_taps(d, l1, x, y, z, coarse));
+            auto seeing = active;
+            if constexpr (body) {
+                const OpenLevel open_level(pyramid, two ? step.level + 1 : step.level);
+                seeing = hn::And(seeing, open_level.holds(d, x, y, z));
+                if (hn::AllFalse(d, seeing)) continue;
+                seeing = hn::And(seeing, open_level.place(d, l1, x, y, z, coarse));
+                if (two) OpenLevel(pyramid, step.level).place(d, l0, x, y, z, fine);
+            } else {
+                if constexpr (merged) seeing = hn::And(seeing, hn::Ge(distance, entry));
+                seeing = hn::And(seeing, place_taps(d, l1, x, y, z, coarse));
+                if (two) place_taps(d, l0, x, y, z, fine);
+            }
             if (hn::AllFalse(d, seeing)) continue;
-            if (two) place_taps(d, l0, x, y, z, fine);
             uint8_t bytes[8] = {};
             hn::StoreMaskBits(d, seeing, bytes);
             const unsigned bits = static_cast<unsigned>(bytes[0]) | (static_cast<unsigned>(bytes[1]) << 8);
@@ -91,9 +144,11 @@ ConeCounts march_batch(const Pyramid& pyramid, const AirMap& air, const ConeSche
             r = hn::MulAdd(share, tr, r);
             g = hn::MulAdd(share, tg, g);
             b = hn::MulAdd(share, tb, b);
+            if constexpr (merged) blocked_depth = hn::MulAdd(blocked, distance, blocked_depth);
             open = hn::Sub(open, blocked);
             active = hn::And(active, hn::Ge(open, hn::Set(d, cut_off)));
         }
+        if constexpr (merged) hn::Store(mean_depth(d, blocked_depth, open), d, batch.depth + first);
         const auto closed = hn::Lt(open, hn::Set(d, cut_off));
         const V whole = hn::IfThenElse(closed, hn::Div(one, hn::Sub(one, open)), one);
         hn::Store(hn::Mul(r, whole), d, batch.r + first);
@@ -104,6 +159,16 @@ ConeCounts march_batch(const Pyramid& pyramid, const AirMap& air, const ConeSche
     return counts;
 }
 
+ConeCounts march_alone(const Pyramid& pyramid, const AirMap& air, const ConeSchedule& schedule, float cut_off, ConeBatch& batch) {
+    return march_batch<false, false>(pyramid, air, schedule, cut_off, batch);
+}
+ConeCounts march_still(const Pyramid& pyramid, const AirMap& air, const ConeSchedule& schedule, float cut_off, ConeBatch& batch) {
+    return march_batch<true, false>(pyramid, air, schedule, cut_off, batch);
+}
+ConeCounts march_body(const Pyramid& pyramid, const AirMap& air, const ConeSchedule& schedule, float cut_off, ConeBatch& batch) {
+    return march_batch<true, true>(pyramid, air, schedule, cut_off, batch);
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace interreflect
 HWY_AFTER_NAMESPACE();
@@ -111,11 +176,15 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace interreflect {
 
-HWY_EXPORT(march_batch);
+HWY_EXPORT(march_alone);
+HWY_EXPORT(march_still);
+HWY_EXPORT(march_body);
 
 ConeCounts march_cones(const Pyramid& pyramid, const AirMap& air, const ConeSchedule& schedule, float cut_off, ConeBatch& batch) {
     if (!pyramid.domain.plain()) return march_warped(pyramid, air, schedule, cut_off, batch);
-    return HWY_DYNAMIC_DISPATCH(march_batch)(pyramid, air, schedule, cut_off, batch);
+    if (pyramid.pose.body != 0) return HWY_DYNAMIC_DISPATCH(march_body)(pyramid, air, schedule, cut_off, batch);
+    if (batch.merged) return HWY_DYNAMIC_DISPATCH(march_still)(pyramid, air, schedule, cut_off, batch);
+    return HWY_DYNAMIC_DISPATCH(march_alone)(pyramid, air, schedule, cut_off, batch);
 }
 
 }  // namespace interreflect

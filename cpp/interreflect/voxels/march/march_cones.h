@@ -6,6 +6,9 @@
 
 namespace interreflect {
 
+/// Depth of a cone that nothing blocks.
+inline constexpr float nothing_there = 1e30f;
+
 /// Cones with a common schedule, in parallel arrays. Directions need not agree, but neighbours that do read the same texels.
 struct ConeBatch {
     static constexpr int capacity = 256;
@@ -26,6 +29,10 @@ struct ConeBatch {
     // Where the domain is not plain, starts and directions are in linear voxels, the plane is the one that touches the warped
     // surface, and this is how long the start's voxels are in linear ones.
     alignas(64) float scale[capacity];
+    // Where `merged`: cones start anywhere, and `depth` is asked for, the mean distance of what blocks them, linear voxels;
+    // nothing_there where nothing does.
+    bool merged = false;
+    alignas(64) float depth[capacity];
     // Results: radiance in the pyramid's unit (times `scale` is W/(m^2 sr)), and the share that leaves the domain unblocked.
     alignas(64) float r[capacity], g[capacity], b[capacity], open[capacity];
 };

@@ -175,7 +175,7 @@ ConeCounts march_vector(const Map& map, const LevelTable& table, const ConeSched
     const auto has_plane = hn::Gt(width, zero);
     const bool harmonics = table.views[table.last].faces == 4;  // of directions in the world
     auto active = hn::FirstN(d, static_cast<std::size_t>(std::min(batch.count - first, lanes)));
-    V r = zero, g = zero, b = zero, open = one;
+    V r = zero, g = zero, b = zero, open = one, blocked_depth = zero;
     ConeCounts counts;
     Sight sight;
     for (const auto& step : schedule.steps) {
@@ -227,9 +227,11 @@ ConeCounts march_vector(const Map& map, const LevelTable& table, const ConeSched
         r = hn::MulAdd(share, tr, r);
         g = hn::MulAdd(share, tg, g);
         b = hn::MulAdd(share, tb, b);
+        if (batch.merged) blocked_depth = hn::MulAdd(blocked, distance, blocked_depth);
         open = hn::Sub(open, blocked);
         active = hn::And(active, hn::Ge(open, hn::Set(d, cut_off)));
     }
+    hn::Store(mean_depth(d, blocked_depth, open), d, batch.depth + first);
     const auto closed = hn::Lt(open, hn::Set(d, cut_off));
     const V full = hn::IfThenElse(closed, hn::Div(one, hn::Sub(one, open)), one);
     hn::Store(hn::Mul(r, full), d, batch.r + first);

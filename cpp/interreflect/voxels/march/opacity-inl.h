@@ -104,6 +104,14 @@ HWY_INLINE V newly_blocked(D d, V open, V opacity, float correlation) {
     return hn::MulAdd(hn::Sub(beyond, independent), hn::Set(d, correlation), independent);
 }
 
+/// From the sum of distances, weighted by what was blocked there, to their mean.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V mean_depth(D d, V sum, V open) {
+    const V one = hn::Set(d, 1.0f);
+    const auto any = hn::Lt(open, one);
+    return hn::IfThenElse(any, hn::Div(sum, hn::IfThenElse(any, hn::Sub(one, open), one)), hn::Set(d, nothing_there));
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace interreflect
 HWY_AFTER_NAMESPACE();

@@ -161,6 +161,16 @@ HWY_INLINE V exit_distance(D d, V p, V direction, float size) {
     return hn::IfThenElse(moves, hn::Div(to_wall, hn::IfThenElse(moves, direction, hn::Set(d, 1.0f))), hn::Set(d, 1e9f));
 }
 
+/// Distance at which rays come into the box [0, size] along one axis; beyond everything where they never do.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V entry_distance(D d, V p, V direction, float size) {
+    const V zero = hn::Zero(d), far = hn::Set(d, size);
+    const V to_wall = hn::Sub(hn::IfThenElse(hn::Gt(direction, zero), zero, far), p);
+    const auto moves = hn::Gt(hn::Abs(direction), hn::Set(d, 1e-6f)), within = hn::And(hn::Ge(p, zero), hn::Le(p, far));
+    return hn::IfThenElse(moves, hn::Div(to_wall, hn::IfThenElse(moves, direction, hn::Set(d, 1.0f))),
+                          hn::IfThenElse(within, zero, hn::Set(d, 1e9f)));
+}
+
 /// The octant of each direction of a vector.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE void store_octants(D d, V dx, V dy, V dz, int* octants) {

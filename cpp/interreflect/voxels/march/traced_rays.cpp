@@ -21,7 +21,7 @@ constexpr int capacity = chunk_size * chunk_size;
 /// What both stages share: pixels of a chunk trace their phase's samples together, one sample of all pixels after the other.
 struct Tracer {
     const TracedRays& technique;
-    const Pyramid& pyramid;
+    Pyramids pyramids;
     const GBuffer& gbuffer;
     const Scene& scene;
     const Intersector& intersector;
@@ -73,7 +73,7 @@ void trace_samples(const Tracer& tracer, std::span<const Ray> rays, std::span<co
     tracer.trace(rays, std::span(hits).first(rays.size()));
     for (std::size_t i = 0; i < rays.size(); ++i) {
         const bool open = !hits[i].valid();
-        const vec3 voxels = open ? vec3(0) : radiance_at_hit(tracer.pyramid, tracer.scene, hits[i], rays[i].direction);
+        const vec3 voxels = open ? vec3(0) : radiance_at_hit(tracer.pyramids, tracer.scene, hits[i], rays[i].direction);
         const vec3 sky = open ? environment_radiance(tracer.scene, rays[i].direction) : vec3(0);
         add(samples[i], voxels, sky, open);
     }
@@ -129,9 +129,9 @@ constexpr std::uint32_t march_stage = 1, glossy_stage = 2;
 
 }  // namespace
 
-GatheredLight march(const TracedRays& technique, const Pyramid& pyramid, const GBuffer& gbuffer, const Scene& scene,
+GatheredLight march(const TracedRays& technique, Pyramids pyramids, const GBuffer& gbuffer, const Scene& scene,
                     const Intersector& intersector, const Share& share, std::uint32_t seed) {
-    const Tracer tracer{technique, pyramid, gbuffer, scene, intersector, block_of(share), seed};
+    const Tracer tracer{technique, pyramids, gbuffer, scene, intersector, block_of(share), seed};
     const vec3 each(1.0f / static_cast<float>(technique.samples));
     Buffer<vec4> voxels(gbuffer.pixels(), vec4(0)), sky(gbuffer.pixels(), vec4(0));
     std::vector<Counts> counts(gbuffer.pixels() / capacity + gbuffer.width + gbuffer.height + 1);
@@ -152,9 +152,9 @@ GatheredLight march(const TracedRays& technique, const Pyramid& pyramid, const G
     return finish_gathering(gbuffer, voxels, pi, sky, vec3(0), counts);
 }
 
-GlossyLight glossy(const TracedRays& technique, const Pyramid& pyramid, const GBuffer& gbuffer, const Scene& scene,
+GlossyLight glossy(const TracedRays& technique, Pyramids pyramids, const GBuffer& gbuffer, const Scene& scene,
                    const Intersector& intersector, std::uint32_t seed) {
-    const Tracer tracer{technique, pyramid, gbuffer, scene, intersector, Block{}, seed};
+    const Tracer tracer{technique, pyramids, gbuffer, scene, intersector, Block{}, seed};
     const float each = 1.0f / static_cast<float>(technique.samples);
     Buffer<vec4> voxels(gbuffer.pixels(), vec4(0)), sky(gbuffer.pixels(), vec4(0));
     std::vector<Counts> counts(gbuffer.pixels() / capacity + gbuffer.width + gbuffer.height + 1);

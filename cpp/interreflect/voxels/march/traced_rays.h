@@ -27,9 +27,9 @@ struct TracedRays {
               Unit::pixels, between(1, 64)});
 };
 
-GatheredLight march(const TracedRays& technique, const Pyramid& pyramid, const GBuffer& gbuffer, const Scene& scene,
+GatheredLight march(const TracedRays& technique, Pyramids pyramids, const GBuffer& gbuffer, const Scene& scene,
                     const Intersector& intersector, const Share& share, std::uint32_t seed);
-GlossyLight glossy(const TracedRays& technique, const Pyramid& pyramid, const GBuffer& gbuffer, const Scene& scene,
+GlossyLight glossy(const TracedRays& technique, Pyramids pyramids, const GBuffer& gbuffer, const Scene& scene,
                    const Intersector& intersector, std::uint32_t seed);
 
 }  // namespace interreflect

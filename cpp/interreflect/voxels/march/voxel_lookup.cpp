@@ -52,14 +52,24 @@ vec3 side_radiance(const Pyramid& pyramid, int grid, const ivec3& at, const vec3
     return back ? lit.back[voxel] : lit.radiance[voxel];
 }
 
+const Pyramid& hierarchy_of(Pyramids pyramids, std::uint32_t body) {
+    const Pyramid* found = pyramids.front();
+    for (const Pyramid* pyramid : pyramids) {
+        if (pyramid->pose.body == body) return *pyramid;
+        if (pyramid->pose.body == 0) found = pyramid;
+    }
+    return *found;
+}
+
 }  // namespace
 
-vec3 radiance_at_hit(const Pyramid& pyramid, const Scene& scene, const Hit& hit, const vec3& direction) {
+vec3 radiance_at_hit(Pyramids pyramids, const Scene& scene, const Hit& hit, const vec3& direction) {
     const HitGeometry at = hit_geometry(*scene.geometry, hit.instance, hit.triangle, hit.u, hit.v);
     const bool back = glm::dot(at.geometric_normal, direction) > 0.0f;
     if (back && !scene.materials[scene.material_of(hit.triangle)].two_sided) return vec3(0);
+    const Pyramid& pyramid = hierarchy_of(pyramids, scene.geometry->instances[hit.instance].body);
     const Domain& domain = pyramid.domain;
-    const auto [grid, point] = domain.place(domain.to_linear(at.position));
+    const auto [grid, point] = domain.place(domain.to_linear(pyramid.pose.to_body(at.position)));
     // Outside of a view volume nothing is known; outside of the scene's bounds is rounding.
     if (domain.warp.view_volume() && !domain.inside(point)) return vec3(0);
     ivec3 cell = glm::clamp(ivec3(glm::floor(point)), ivec3(0), domain.cells - 1);

@@ -119,7 +119,7 @@ void first_faces_block(const TexelBlock& block, const VoxelView& voxels) {
 }  // namespace
 
 Pyramid build_anisotropic(const LevelKnobs& knobs, const LitVoxels& lit) {
-    Pyramid pyramid = make_levels(lit.grid->domain, 6, knobs);
+    Pyramid pyramid = make_levels(*lit.grid, 6, knobs);
     pyramid.scale = radiance_scale(lit);
     const Normals normals = in_grid(mean_normals(lit), lit);
     const VoxelView voxels = view(lit, pyramid.scale, normals);

@@ -184,7 +184,7 @@ void build_filtered(Pyramid& pyramid, const VoxelView& voxels, const IsotropicFi
 
 Pyramid build_isotropic(Coverage coverage, bool columns, const IsotropicKnobs& knobs, const LitVoxels& lit) {
     const IsotropicFilter filter{coverage, knobs.kernel == "tent", knobs.format == "rgba8", columns};
-    Pyramid pyramid = make_levels(lit.grid->domain, 1, knobs);
+    Pyramid pyramid = make_levels(*lit.grid, 1, knobs);
     const float scale = radiance_scale(lit);  // refuses what is not finite
     pyramid.scale = filter.eight_bits ? 1.0f : scale;
     build_filtered(
@@ -199,9 +199,9 @@ Pyramid build_isotropic(Coverage coverage, bool columns, const IsotropicKnobs& k
 }
 
 Pyramid build_harmonics(bool columns, const LevelKnobs& knobs, const LitVoxels& lit) {
-    Pyramid pyramid = make_levels(lit.grid->domain, 4, knobs);
+    Pyramid pyramid = make_levels(*lit.grid, 4, knobs);
     pyramid.scale = radiance_scale(lit);
-    const Normals normals = front_normals(lit);
+    const Normals normals = in_body(front_normals(lit), lit);
     build_filtered(
         pyramid, view(lit, pyramid.scale, normals), {Coverage::surface, false, false, columns, 4},
         [](const LevelView& level, const VoxelView& voxels, int z) {

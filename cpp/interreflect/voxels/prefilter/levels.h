@@ -44,7 +44,7 @@ constexpr std::uint64_t most_bytes = std::uint64_t{4} << 30;
 /// The pyramid's empty levels, at most as many as the knobs say: memory not yet written. Those in bricks, which come first, have
 /// only the bricks' count. Throws std::invalid_argument where they
 /// would take more than `most_bytes` besides those in bricks, or where fewer levels are allowed than there are nested grids.
-Pyramid make_levels(const Domain& domain, int faces, const LevelKnobs& knobs);
+Pyramid make_levels(const VoxelGrid& grid, int faces, const LevelKnobs& knobs);
 
 /// The power of two that brings the largest radiance just below 2^15; 1 where there is none. Throws std::invalid_argument where a
 /// radiance is not finite.
@@ -57,14 +57,17 @@ LevelView above(Pyramid& pyramid, std::size_t i);
 /// Means of the front sides' normals, and normals of the points where fronts are lit: world space.
 Normals mean_normals(const LitVoxels& lit);
 Normals front_normals(const LitVoxels& lit);
-/// The same in the axes of a warped grid, along which its texels are looked at: what is perpendicular to surfaces there.
+/// The same in the space of the body whose voxels they are.
+Normals in_body(Normals normals, const LitVoxels& lit);
+/// The same in the axes of a body's or a warped grid, along which its texels are looked at: what is perpendicular to surfaces
+/// there.
 Normals in_grid(Normals normals, const LitVoxels& lit);
 /// All voxels, with radiance divided by `scale`.
 VoxelView view(const LitVoxels& lit, float scale, const Normals& normals = {});
 /// The voxels of a grid in slices 2 z and 2 z + 1 of its level.
 VoxelView slices_of(VoxelView voxels, const LevelView& level, int z);
 
-/// Repeats the outermost texels of every slice in its border, and the outermost slices.
+/// Repeats the outermost texels of every slice in its border, and the outermost slices; or fills the border with air.
 void fill_border(Pyramid::Level& level);
 
 /// The slices of one level, or of a box in it, in pieces worth a thread's while.
@@ -97,6 +100,7 @@ void write_coarse_grids(Pyramid& pyramid, const VoxelView& voxels, const Write& 
 /// second level is made beside the finest, whose slices are then still in the core's cache.
 template <class Reduce>
 void reduce_coarse(Pyramid& pyramid, const Reduce& reduce, std::size_t made = 1) {
+    if (pyramid.levels[0].open) fill_border(pyramid.levels[0]);
     for (std::size_t i = made; i < pyramid.levels.size(); ++i) {
         if (i > made) {
             const LevelView fine = view(pyramid.levels[i - 1]), coarse = above(pyramid, i - 1);

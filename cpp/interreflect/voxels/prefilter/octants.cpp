@@ -197,7 +197,7 @@ HWY_EXPORT(write_packed_octants);
 }  // namespace
 
 Pyramid build_octants(bool columns, const LevelKnobs& knobs, const LitVoxels& lit) {
-    Pyramid pyramid = make_levels(lit.grid->domain, 8, knobs);
+    Pyramid pyramid = make_levels(*lit.grid, 8, knobs);
     pyramid.scale = radiance_scale(lit);
     const Normals normals = in_grid(front_normals(lit), lit);
     const VoxelView all = view(lit, pyramid.scale, normals);

@@ -14,6 +14,24 @@ namespace {
 /// The vectors as floats, three each; there may be none.
 const float* floats(const Buffer<vec3>& vectors) { return reinterpret_cast<const float*>(vectors.data()); }
 
+constexpr int most_halvings = 10;  // of the finest grid there is, of 1024 voxels on a side
+
+void clear_border(Pyramid::Level& level) {
+    const ivec3 n = level.size;
+    const auto clear = [&](int x, int y, int z, int face, std::size_t count) {
+        std::memset(&level.texels[4 * level.index(x, y, z, face)], 0, 4 * count * sizeof(std::uint16_t));
+    };
+    for (int face = 0; face < level.faces; ++face) {
+        clear(-1, -1, -1, face, level.slice());
+        clear(-1, -1, n.z, face, level.slice());
+        for (int z = 0; z < n.z; ++z) {
+            clear(-1, -1, z, face, level.row());
+            clear(-1, n.y, z, face, level.row());
+            for (int y = 0; y < n.y; ++y) clear(-1, y, z, face, 1), clear(n.x, y, z, face, 1);
+        }
+    }
+}
+
 std::size_t halves_of(const Pyramid::Level& level) { return level.volume() * static_cast<std::size_t>(level.faces) * 4; }
 
 std::string sizes_of(const Domain& domain) {
@@ -37,24 +55,29 @@ std::size_t levels_in_bricks(const Pyramid& pyramid, int dense_limit) {
 
 }  // namespace
 
-Pyramid make_levels(const Domain& domain, int faces, const LevelKnobs& knobs) {
+Pyramid make_levels(const VoxelGrid& grid, int faces, const LevelKnobs& knobs) {
+    const Domain& domain = grid.domain;
+    const bool open = grid.pose.body != 0;
     if (knobs.levels != 0 && knobs.levels < domain.cascades)
         throw std::invalid_argument("prefilter: levels is " + std::to_string(knobs.levels) + ", but each of " +
                                     std::to_string(domain.cascades) + " nested grids is a level");
     Pyramid pyramid;
     pyramid.domain = domain;
+    pyramid.pose = grid.pose;
     pyramid.faces = faces;
     for (ivec3 size = domain.cells;;) {
         const std::size_t number = pyramid.levels.size();
         Pyramid::Level level;
         level.size = size;
+        level.open = open;
         level.origin = number < static_cast<std::size_t>(domain.cascades) ? domain.origin[number] : ivec3(0);
         level.faces = number == 0 && faces == 6 ? 1 : faces;
         pyramid.levels.push_back(std::move(level));
-        if (size == ivec3(1) || static_cast<int>(number) + 1 == knobs.levels) break;
+        const bool whole = size == ivec3(1) && (!open || static_cast<int>(number) == most_halvings);
+        if (whole || static_cast<int>(number) + 1 == knobs.levels) break;
         if (static_cast<int>(number) + 1 >= domain.cascades) size = (size + 1) / 2;
     }
-    const std::size_t in_bricks = levels_in_bricks(pyramid, knobs.dense_limit);
+    const std::size_t in_bricks = open ? 0 : levels_in_bricks(pyramid, knobs.dense_limit);  // bricks repeat borders
     for (std::size_t i = 0; i < in_bricks; ++i) pyramid.levels[i].bricks.count = TexelBricks::count_for(pyramid.levels[i].size);
     const auto dense = std::span(pyramid.levels).subspan(in_bricks);
     std::uint64_t bytes = 0;
@@ -107,23 +130,39 @@ Normals front_normals(const LitVoxels& lit) {
     return {points.empty() ? nullptr : &points[0].normal.x, sizeof(VoxelPoint) / sizeof(float)};
 }
 
-Normals in_grid(Normals normals, const LitVoxels& lit) {
-    const VoxelGrid& grid = *lit.grid;
-    if (grid.domain.warp.kind == Warp::Kind::linear) return normals;
-    Buffer<vec3> turned(grid.size());
-    parallel_blocks(grid.size(), 4096, [&](std::size_t begin, std::size_t end) {
+namespace {
+
+/// Normals of their own: turn(i, normal), for every voxel.
+template <class Turn>
+Normals turned(const Normals& normals, std::size_t size, const Turn& turn) {
+    Buffer<vec3> own(size);
+    parallel_blocks(size, 4096, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const float* n = normals.first + i * normals.stride;
-            const mat3 density = grid.domain.density(grid.domain.to_linear(grid.position[i]));
-            const vec3 across = glm::transpose(glm::inverse(density)) * vec3(n[0], n[1], n[2]);
-            const float length = glm::length(across);
-            turned[i] = length > 0.0f ? across / length : vec3(0);
+            own[i] = turn(i, vec3(n[0], n[1], n[2]));
         }
     });
-    normals.first = floats(turned);
-    normals.stride = 3;
-    normals.own = std::move(turned);
-    return normals;
+    const float* first = floats(own);
+    return {first, 3, std::move(own)};
+}
+
+}  // namespace
+
+Normals in_body(Normals normals, const LitVoxels& lit) {
+    const BodyPose& pose = lit.grid->pose;
+    if (pose.body == 0) return normals;
+    return turned(normals, lit.grid->size(), [&](std::size_t, const vec3& n) { return pose.direction_to_body(n); });
+}
+
+Normals in_grid(Normals normals, const LitVoxels& lit) {
+    const VoxelGrid& grid = *lit.grid;
+    if (grid.domain.warp.kind == Warp::Kind::linear) return in_body(std::move(normals), lit);
+    return turned(normals, grid.size(), [&](std::size_t i, const vec3& n) {
+        const mat3 density = grid.domain.density(grid.domain.to_linear(grid.position[i]));
+        const vec3 across = glm::transpose(glm::inverse(density)) * n;
+        const float length = glm::length(across);
+        return length > 0.0f ? across / length : vec3(0);
+    });
 }
 
 VoxelView view(const LitVoxels& lit, float scale, const Normals& normals) {
@@ -151,6 +190,7 @@ VoxelView slices_of(VoxelView voxels, const LevelView& level, int z) {
 }
 
 void fill_border(Pyramid::Level& level) {
+    if (level.open) return clear_border(level);
     constexpr std::size_t texel = 4;
     const std::size_t row = level.row() * texel, slice = level.slice() * texel;
     for (int face = 0; face < level.faces; ++face) {
