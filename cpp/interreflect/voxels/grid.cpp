@@ -85,10 +85,10 @@ void nest(const Setting& at, Domain& domain) {
     }
 }
 
-/// How far away the scene's farthest corner lies: the same wherever the camera looks.
+/// A hair beyond the scene's farthest corner, lest that lie on the outermost face: the same wherever the camera looks.
 float farthest(const Setting& at, const vec3& eye) {
     const vec3 away = glm::max(glm::abs(at.bounds.lower - eye), glm::abs(at.bounds.upper - eye));
-    return glm::length(away);
+    return 1.001f * glm::length(away);
 }
 
 /// A grid whose linear voxels have the eye at 0 and the volume's depth over `resolution` as their size.

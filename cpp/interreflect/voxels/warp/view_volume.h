@@ -15,8 +15,10 @@ struct ViewVolume {
                    Param{"far", &ViewVolume::far, "where they end; 0: as far away as the scene's farthest corner", Unit::extents,
                          between(0, 100)},
                    Param{"widening", &ViewVolume::widening,
-                         "width of the volume as a multiple of the picture's: light from outside of it is lost", Unit::none,
-                         between(1, 20)}};
+                         "width of the volume as a multiple of the picture's: light from outside of it is lost, and cones that "
+                         "leave it are open (see "
+                         "the sky by rays, TracedSky, where walls lie outside)",
+                         Unit::none, between(1, 20)}};
 };
 
 }  // namespace interreflect
