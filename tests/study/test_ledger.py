@@ -160,8 +160,9 @@ def test_flicker_is_judged_against_a_grid_that_stands_still():
     def flicker(*means):
         return counted("flicker", *({"mean": round(1e6 * mean)} for mean in means))
 
-    assert words(freed.f8(flicker(0.01, 0.011, 0.05, 0.04, 0.08, 0.02))) == HOLDS
-    assert words(freed.f8(flicker(0.01, 0.05, 0.05, 0.01, 0.015, 0.02))) == DOES_NOT_HOLD
+    others = (0.02,) * 10  # unsnapped and nested grids, and all of them turning
+    assert words(freed.f8(flicker(0.01, 0.011, 0.05, 0.04, 0.08, 0.02, *others))) == HOLDS
+    assert words(freed.f8(flicker(0.01, 0.05, 0.05, 0.01, 0.015, 0.02, *others))) == DOES_NOT_HOLD
     assert words(freed.f10(flicker(0.05, 0.03, 0.01))) == HOLDS
     assert words(freed.f10(flicker(0.05, 0.05, 0.06))) == DOES_NOT_HOLD
 
