@@ -1,4 +1,4 @@
-"""5.2.4: How much indirect light flickers when the camera moves: plain, warped and curved grids."""
+"""5.2.4, 5.4: How much indirect light flickers when the camera moves ahead or turns: plain, warped, curved and nested grids."""
 
 from __future__ import annotations
 
@@ -15,18 +15,24 @@ from experiments.shared.panels import as_share, panels, picture
 SIZE = (320, 180)
 
 
-NAMES = (
+GRIDS = (
     "scene's bounds",
     "about the camera, snapped",
     "about the camera, not snapped",
     "spline warp",
     "perspective warp",
     "spherical warp",
+    "spherical warp, not snapped",
+    "nested grids",
 )
+TURNING = ", turning"
+NAMES = (*GRIDS, *(name + TURNING for name in GRIDS))
+TURN = 0.5  # degrees a frame: about a voxel of the view volumes
 
 
 def grids() -> list[ir.Grid]:
-    """128 voxels along each side, by name; over the scene's bounds but for those that are about the camera by their nature."""
+    """128 voxels along each side, by name; over the scene's bounds but for those that are about the camera by their nature. Nested grids:
+    64 twice, as fine as the others near the camera."""
     return [
         ir.Grid(resolution=128),
         ir.Grid(resolution=128, region=ir.AroundCamera(step=1)),
@@ -34,6 +40,8 @@ def grids() -> list[ir.Grid]:
         ir.Grid(resolution=128, warp=ir.CubicSpline(alpha=0.25)),
         ir.Grid(resolution=128, warp=ir.Perspective()),
         ir.Grid(resolution=128, warp=ir.Spherical()),
+        ir.Grid(resolution=128, warp=ir.Spherical(snap=False)),
+        ir.Grid(resolution=64, cascades=2),
     ]
 
 
@@ -44,7 +52,7 @@ def flickering(**changes: object) -> Flicker:
 
 
 def studies() -> Sequence[ir.Study]:
-    return [drawn("flicker of warps", [flickering(grid=grid) for grid in grids()], size=SIZE)]
+    return [drawn("flicker of warps", [flickering(grid=grid, turn=turn) for turn in (0.0, TURN) for grid in grids()], size=SIZE)]
 
 
 def means(records: ir.Records) -> dict[str, float]:

@@ -17,6 +17,7 @@ NAMES = (
     "six faces",
     "spherical harmonics",
     "spherical frustum",
+    "nested grids, 64 twice",
     "interleaved 2 x 2",
     "interleaved 4 x 4",
 )
@@ -32,6 +33,7 @@ def ways() -> list[ir.methods.VoxelConeTracing]:
         {"prefilter": ir.Anisotropic()},
         {"prefilter": ir.SphericalHarmonicVoxels()},
         {"grid.warp": ir.Spherical()},
+        {"grid": ir.Grid(resolution=64, cascades=2)},
         {"share": ir.Interleaved(width=2, height=2)},
         {"share": ir.Interleaved(width=4, height=4)},
     ]

@@ -31,8 +31,9 @@ def drawn(name: str, methods: Sequence[Any], scene: ir.Scene | None = None, size
 
 
 def compared(name: str, methods: Sequence[Any], scene: ir.Scene | None = None, size: tuple[int, int] = SIZE) -> ir.Study:
-    """Pictures beside the truth of one bounce; not timed. The thesis has no sky: here it is traced, lest cones that end early show it."""
-    methods = [method.replace({"sky": ir.TracedSky()}) for method in methods]
+    """Pictures beside the truth of one bounce; not timed. The thesis has no sky: here it is traced, lest cones that end early show it, by
+    samples enough that its noise is not what one sees."""
+    methods = [method.replace({"sky": ir.TracedSky(samples=64)}) for method in methods]
     return ir.Study(
         name=f"Freed: {name}",
         scenes=[scene or sponza()],

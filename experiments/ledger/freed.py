@@ -204,11 +204,13 @@ def f11(flickering: ir.Records, quality: ir.Records) -> list[Check]:
         )
 
     plain = "isotropic, volume coverage"
-    names = ("scene's bounds", "perspective warp", "spherical warp")
+    names = ("scene's bounds", "perspective warp", "spherical warp", "spherical warp, not snapped", "nested grids")
+    turning = [name + flicker_of_warps.TURNING for name in names]
     return [
-        told("curved frustum voxels against flicker", ", ".join(f"{name} {flicker[name]:.3f}" for name in names)),
+        told("curved and nested voxels against flicker, moving ahead", ", ".join(f"{name} {flicker[name]:.3f}" for name in names)),
+        told("and turning", ", ".join(f"{name} {flicker[name]:.3f}" for name in turning)),
         told("curved frustum, error and memory", against([plain, "spherical frustum"])),
-        told("nested grids", "not yet: their voxels cannot be filtered so far"),
+        told("nested grids, error and memory", against([plain, "nested grids, 64 twice"])),
         told("anisotropic voxels", against([plain, "isotropic, surface coverage", "six faces"])),
         told("spherical harmonics", against([plain, "spherical harmonics"])),
         told("light shared between pixels", against([plain, "interleaved 2 x 2", "interleaved 4 x 4"])),

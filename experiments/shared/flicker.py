@@ -18,7 +18,7 @@ from interreflect.stability.reprojection import origin, surfaces
 
 @method
 class Flicker(VoxelConeTracing):
-    """Indirect light's change between frames of a camera that moves ahead through a still scene, at the same surface points.
+    """Indirect light's change between frames of a camera that moves ahead or turns in a still scene, at the same surface points.
 
     Diffuse indirect light of a still scene does not change at a surface point, so whatever changes is flicker. Picture: the mean over
     frames of |change|, in units of the mean indirect radiance, grey. Counts of the stage `flicker`, in millionths of that mean: `mean`,
@@ -27,13 +27,15 @@ class Flicker(VoxelConeTracing):
 
     frames: int = knob(default=6, doc="frames that are played", minimum=2, maximum=64)
     by: float = knob(default=0.002, doc="how far the camera moves ahead a frame", unit="extents", minimum=0.0, maximum=1.0)
+    turn: float = knob(default=0.0, doc="how far it turns a frame; it then does not move", unit="degrees", minimum=-45.0, maximum=45.0)
 
     def compose(self, view: View, profile: Profile) -> tuple[Image, Image]:
         extent = float(np.ptp(np.asarray(view.scene.bounds), axis=0).max())
         ahead = np.subtract(view.camera.target, view.camera.position)
         step = ahead / np.linalg.norm(ahead) * self.by * extent
         name = next(name for name, camera in view.scene.cameras.items() if camera == view.camera)
-        motion = Motion.dolly(name, by=tuple(step), frames=self.frames)
+        turns = Motion.rotation(name, by=self.turn, frames=self.frames)
+        motion = turns if self.turn else Motion.dolly(name, by=tuple(step), frames=self.frames)
         before = None
         changes = []
         history = None

@@ -47,19 +47,35 @@ struct Work {
     }
 };
 
+/// A pixel's lobe from where it is seen.
+struct SeenLobe {
+    vec3 view;
+    float cosine;  // between normal and view
+    Lobe lobe;
+    LobeCone cone;
+
+    SeenLobe(const Work& work, int pixel) {
+        const GBuffer& g = work.gbuffer;
+        view = glm::normalize(g.camera.position - g.position[pixel]);
+        cosine = std::max(glm::dot(g.normal[pixel], view), 0.0f);
+        lobe = lobe_at(g, work.scene.materials[work.scene.material_of(g.triangle[pixel])], pixel).lobe;
+        cone = work.tables[static_cast<int>(lobe)]->at(g.alpha[pixel], cosine);
+    }
+    vec3 albedo(const vec3& specular) const {
+        return specular * cone.scale + (vec3(1) - specular) * (has_microfacets(lobe) ? cone.bias : 0.0f);
+    }
+};
+
 Reflection reflect(const Work& work, int pixel) {
     const GBuffer& g = work.gbuffer;
-    const vec3 normal = g.normal[pixel], view = glm::normalize(g.camera.position - g.position[pixel]);
-    const float cosine = std::fmax(glm::dot(normal, view), 0.0f);
-    const Lobe lobe = lobe_at(g, work.scene.materials[work.scene.material_of(g.triangle[pixel])], pixel).lobe;
-    const LobeCone cone = work.tables[static_cast<int>(lobe)]->at(g.alpha[pixel], cosine);
-    const vec3 across = normal * cosine - view;  // the mirrored view's part along the surface
+    const SeenLobe seen(work, pixel);
+    const vec3 normal = g.normal[pixel];
+    const vec3 across = normal * seen.cosine - seen.view;  // the mirrored view's part along the surface
     const float length = glm::length(across);
     const vec3 tangent = length > 1e-6f ? across / length : Frame(normal).tangent;
-    const vec2 mean = work.technique.aperture == "freed" ? vec2(length, cosine) : cone.direction;
-    const vec3 specular = g.specular[pixel];
-    return {pixel, work.width_of(cone, g.alpha[pixel]), glm::normalize(tangent * mean.x + normal * mean.y),
-            specular * cone.scale + (vec3(1) - specular) * (has_microfacets(lobe) ? cone.bias : 0.0f)};
+    const vec2 mean = work.technique.aperture == "freed" ? vec2(length, seen.cosine) : seen.cone.direction;
+    return {pixel, work.width_of(seen.cone, g.alpha[pixel]), glm::normalize(tangent * mean.x + normal * mean.y),
+            seen.albedo(g.specular[pixel])};
 }
 
 /// Marches reflections of one width.
@@ -137,7 +153,7 @@ Counts finish_shared(const Work& work, const Tile& tile, Buffer<vec4>& voxels, B
         if (!work.reflects(pixel)) {
             voxels[pixel] = sky[pixel] = vec4(0);
         } else if (alike) {
-            const vec3 albedo = reflect(work, pixel).albedo / lobes;
+            const vec3 albedo = SeenLobe(work, pixel).albedo(work.gbuffer.specular[pixel]) / lobes;
             voxels[pixel] *= vec4(albedo, 0);
             sky[pixel] *= vec4(albedo, 0);
         } else {

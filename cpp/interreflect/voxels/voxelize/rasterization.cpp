@@ -1,6 +1,8 @@
 #include "voxels/voxelize/rasterization.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <span>
 #include <stdexcept>
 
@@ -111,28 +113,41 @@ class Fragments {
 /// where voxels are large.
 class Unseen {
   public:
-    Unseen(std::span<const vec2> samples, int oversampling) : samples_(samples), scale_(static_cast<float>(oversampling)) {}
+    Unseen(std::span<const vec2> samples, int oversampling)
+        : lanes_(static_cast<int>((samples.size() + 3) / 4 * 4)), scale_(static_cast<float>(oversampling)) {
+        for (std::size_t i = 0; i < most_samples; ++i)
+            u_[i] = samples[i % samples.size()].x, v_[i] = samples[i % samples.size()].y;
+    }
 
     bool operator()(const vec3* corner, const vec3& cross) const {
         const vec3 n = glm::abs(cross);
-        const int depth_axis = n.x >= n.y && n.x >= n.z ? 0 : n.y >= n.z ? 1 : 2;
-        const int u = (depth_axis + 1) % 3, v = (depth_axis + 2) % 3;
         // Two axes alike: rounding decides elsewhere.
-        if (std::max(n[u], n[v]) > (1.0f - 1e-5f) * n[depth_axis]) return false;
-        const vec3 lowest = glm::min(glm::min(corner[0], corner[1]), corner[2]) * scale_ - slack;
-        const vec3 highest = glm::max(glm::max(corner[0], corner[1]), corner[2]) * scale_ + slack;
-        for (const vec2& sample : samples_)
-            if (holds(lowest[u] - sample.x, highest[u] - sample.x) && holds(lowest[v] - sample.y, highest[v] - sample.y))
-                return false;
-        return true;
+        if (n.x > most_alike * std::max(n.y, n.z)) return unseen<1, 2>(corner);
+        if (n.y > most_alike * std::max(n.x, n.z)) return unseen<2, 0>(corner);
+        return n.z > most_alike * std::max(n.x, n.y) && unseen<0, 1>(corner);
     }
 
   private:
     static constexpr float slack = 1e-3f;  // pixels: far more than an edge's crossings are rounded by
-    static bool holds(float lowest, float highest) { return std::ceil(lowest) <= highest; }  // an integer
+    static constexpr float most_alike = 1.0f + 1e-5f;
 
-    std::span<const vec2> samples_;
+    template <int U, int V>
+    bool unseen(const vec3* corner) const {
+        const float least_u = std::min(std::min(corner[0][U], corner[1][U]), corner[2][U]) * scale_ - slack;
+        const float most_u = std::max(std::max(corner[0][U], corner[1][U]), corner[2][U]) * scale_ + slack;
+        const float least_v = std::min(std::min(corner[0][V], corner[1][V]), corner[2][V]) * scale_ - slack;
+        const float most_v = std::max(std::max(corner[0][V], corner[1][V]), corner[2][V]) * scale_ + slack;
+        int seen = 0;
+        for (int begin = 0; begin < lanes_; begin += 4)
+            for (int i = begin; i < begin + 4; ++i)
+                seen |= static_cast<int>(std::ceil(least_u - u_[i]) <= most_u - u_[i]) &
+                        static_cast<int>(std::ceil(least_v - v_[i]) <= most_v - v_[i]);
+        return seen == 0;
+    }
+
+    int lanes_;
     float scale_;
+    std::array<float, most_samples> u_, v_;  // of the samples, repeated
 };
 
 void rasterize(const VoxelTriangle& t, const LinearBox& box, int oversampling, std::span<const vec2> samples,

@@ -36,6 +36,10 @@ class Tessellator {
 
     void tessellate(const Patch& patch) {
         if (triangle_.crosses && outside(patch)) return;
+        if (in_one_cell(patch)) {
+            add(patch, vec3(1.0f / 3.0f), patch.area);
+            return;
+        }
         std::array<float, 3> length;
         for (int i = 0; i < 3; ++i) length[i] = glm::distance(patch.corner[i], patch.corner[(i + 1) % 3]);
         const auto longest = static_cast<int>(std::max_element(length.begin(), length.end()) - length.begin());
@@ -46,7 +50,7 @@ class Tessellator {
             halve(patch, longest);
             return;
         }
-        if (thin && !in_one_cell(patch)) {
+        if (thin) {
             emit_edges(patch, longest, length);
             return;
         }
@@ -125,10 +129,6 @@ class Tessellator {
         });
     }
     void emit(const Patch& patch, const TessellationLevels& levels) {
-        if (in_one_cell(patch)) {
-            add(patch, vec3(1.0f / 3.0f), patch.area);
-            return;
-        }
         tessellation_rows(levels, [&](const vec3& start, const vec3& along, int count, float share) {
             for (int j = 0; j < count; ++j) add(patch, start + along * static_cast<float>(j), share * patch.area);
         });
