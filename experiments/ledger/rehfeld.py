@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import interreflect as ir
 from experiments.ledger.claim import Check, Claim, above, below, told
-from experiments.rehfeld import alternating_layers, cone_shadows, resolution, start_as_rays, surface_coverage
+from experiments.rehfeld import alternating_layers, cone_shadows, resolution, rigid_bodies, start_as_rays, surface_coverage
 
 CACHES = "clustered radiance caches"
 
@@ -41,6 +41,18 @@ def r8(records: ir.Records) -> list[Check]:
         above("surface coverage keeps the wall opaque in every level", float(opacity["SurfaceCoverage"].min()), 0.99),
         below("volume coverage thins it", float(opacity["VolumeCoverage"][2]), 1 / 3, " at level 2"),
         told(f"volume coverage from level 0 to {last}", ", ".join(f"{value:.2f}" for value in opacity["VolumeCoverage"])),
+    ]
+
+
+def r11(records: ir.Records) -> list[Check]:
+    found = rigid_bodies.differences(records)
+    (shadows, radiance), (moved_shadows, moved_radiance) = (found[name] for name in rigid_bodies.NAMES[1:])
+    return [
+        # "Exactly": a body's own voxels lie elsewhere than the box's, so it may differ by what moving the voxels makes, and no more.
+        below("shadows compose as exactly as voxels can tell", shadows / moved_shadows, 1.0, " of what other voxels change"),
+        # "Small": a twentieth of the light.
+        below("radiance has a small error", 100 * radiance, 5.0, " % of the indirect light"),
+        told("other voxels change", f"{moved_shadows:.1%} of the direct and {moved_radiance:.1%} of the indirect light"),
     ]
 
 
@@ -96,7 +108,8 @@ CLAIMS = (
         "R11",
         "3.1",
         "Several hierarchies (rigid instances) compose: shadows exactly, radiance with small error.",
-        missing="rigid bodies with hierarchies of their own",
+        rigid_bodies.studies,
+        r11,
     ),
     Claim("R12", "5", "Under camera motion caches jump.", missing=CACHES),
     Claim(
