@@ -1,4 +1,4 @@
-"""5.2.4, 5.4: How much indirect light flickers when the camera moves ahead or turns: plain, warped, curved and nested grids."""
+"""5.2.4: How much indirect light flickers when the camera moves ahead or turns: plain, warped, curved and nested grids."""
 
 from __future__ import annotations
 

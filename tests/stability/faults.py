@@ -118,7 +118,7 @@ class Stale:
     def __init__(self):
         self.lit = None
 
-    def __call__(self, light_voxels, technique, scene, voxels, seed=0, history=None):
+    def __call__(self, light_voxels, technique, scene, voxels, seed=0, **keys):
         if self.lit is None:
             self.lit = light_voxels(technique, scene, voxels, seed)
         return self.lit
@@ -140,7 +140,7 @@ FAULTS = {
     "rows of the march exchanged": after("march", exchanged_rows),
     "cones in steps of absolute length": instead(
         "march",
-        lambda f, t, pyramid, *rest, **keys: f(t.replace(normal_offset=min(8.0, 0.05 / pyramid.domain.voxel_size)), pyramid, *rest, **keys),
+        lambda f, t, all_, *rest, **keys: f(t.replace(normal_offset=min(8.0, 0.05 / all_[0].domain.voxel_size)), all_, *rest, **keys),
     ),
     "seed depends on threads": instead("march", lambda f, *a, seed, **keys: f(*a, **keys, seed=seed + _core.thread_limit())),
     "lobe halved": after("glossy", lobe_halved),

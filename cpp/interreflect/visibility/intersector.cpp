@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <bit>
 #include <cstddef>
 #include <cstring>
 #include <stdexcept>
@@ -314,7 +315,21 @@ bool Intersector::occluded(const Ray& ray) const {
     return query.tfar < 0.0f;
 }
 
+/// Gives idle lanes the first active lane's ray: what happens to lie in memory there (not a number, say) can keep the library's
+/// coherent traversal from ever ending.
+static void settle_idle_lanes(RayPacket& packet, std::uint32_t active) {
+    constexpr std::uint32_t all = (1U << RayPacket::width) - 1U;
+    if (active == all || active == 0) return;
+    const int first = std::countr_zero(active);
+    const Ray ray{{packet.origin_x[first], packet.origin_y[first], packet.origin_z[first]},
+                  packet.near[first],
+                  {packet.direction_x[first], packet.direction_y[first], packet.direction_z[first]},
+                  packet.far[first]};
+    for (std::uint32_t idle = all & ~active; idle != 0; idle &= idle - 1) packet.set(std::countr_zero(idle), ray);
+}
+
 void Intersector::nearest(RayPacket& packet, std::uint32_t active) const {
+    settle_idle_lanes(packet, active);
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
@@ -327,6 +342,7 @@ void Intersector::nearest(RayPacket& packet, std::uint32_t active) const {
 }
 
 std::uint32_t Intersector::occluded(RayPacket& packet, std::uint32_t active) const {
+    settle_idle_lanes(packet, active);
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
