@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <vector>
 
 #include "data/environment.h"
@@ -139,6 +140,27 @@ TEST(Intersector, PacketsAndStreamsFindWhatSingleRaysFind) {
     EXPECT_GT(hits, 500);  // the comparison saw both
     EXPECT_LT(hits, 4000);
     EXPECT_GT(w.intersector->bytes(), 140 * sizeof(vec3));  // at least the corners of the triangles
+}
+
+/// Leaves `value` where the frames of the next calls will lie.
+[[gnu::noinline]] void dirty_the_stack(int value) {
+    std::array<volatile std::uint8_t, 1 << 16> frames;
+    for (auto& byte : frames) byte = static_cast<std::uint8_t>(value);
+}
+
+TEST(Intersector, WhatLiesOnTheStackDoesNotMatterToPackets) {
+    const World w = mixed_world();
+    for (const int left : {0, 0xbf, 0xff})
+        for (const Ray& ray : random_rays(50)) {
+            RayPacket packet;
+            packet.set(0, ray);
+            dirty_the_stack(left);
+            EXPECT_EQ(w.intersector->occluded(packet, 1) != 0, w.intersector->nearest(ray).valid());
+            packet.set(0, ray);
+            dirty_the_stack(left);
+            w.intersector->nearest(packet, 1);
+            EXPECT_EQ(packet.hit(0).valid(), w.intersector->nearest(ray).valid());
+        }
 }
 
 TEST(Intersector, HitsLieOnTheSolidPartOfTheTriangleTheyName) {
@@ -346,38 +368,6 @@ TEST(Environment, TheCameraAndTheLightsSeeTheSameImage) {
         const vec3 d = uniform_sphere({rng.uniform(), rng.uniform()});
         EXPECT_LT(glm::length(environment_radiance(w.scene, d) - lights.environment(d)), 1e-4f);
     }
-}
-
-TEST(LightView, PointsOnATexelsRayProjectOntoThatTexel) {
-    const PointLight point{{1, 2, 3}, {1, 1, 1}};
-    const SpotLight spot{{1, 2, 3}, {0.3f, -1, 0.2f}, {1, 1, 1}, 20, 30};
-    const DirectionalLight sun{{0.3f, -1, 0.2f}, {1, 1, 1}};
-    std::vector<LightView> views = views_of(point, 32);
-    EXPECT_EQ(views.size(), 6U);
-    for (const LightView& view : views_of(spot, 32)) views.push_back(view);
-    EXPECT_EQ(views.size(), 7U);
-    views.push_back(view_of(sun, {vec3(-1), vec3(2, 1, 4)}, 32));
-    for (const LightView& view : views)
-        for (const vec2 at : {vec2(0.5f, 0.5f), vec2(16.25f, 3.5f), vec2(31, 30)}) {
-            const Ray ray = view.ray(at.x, at.y);
-            const auto back = view.project(ray.origin + ray.direction * 3.0f);
-            EXPECT_TRUE(back.inside);
-            EXPECT_NEAR(back.x, at.x, 1e-3f);
-            EXPECT_NEAR(back.y, at.y, 1e-3f);
-        }
-}
-
-TEST(LightView, TexelsOfACubeSpanTheSphereButForTheirMargin) {
-    constexpr int size = 64;
-    double sum = 0;
-    for (const LightView& view : views_of(PointLight{}, size))
-        for (int y = 0; y < size; ++y)
-            for (int x = 0; x < size; ++x) {
-                const vec3 d = view.ray(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f).direction;
-                const bool margin = max_component(glm::abs(d)) > glm::dot(d, view.forward);
-                sum += margin ? 0 : view.texel_measure(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
-            }
-    EXPECT_NEAR(sum, 4 * pi, 4 * pi * 2e-2);  // texels on the border count by their centre: half a texel of 64
 }
 
 TEST(DepthMap, AFlatReceiverIsLitHoweverSteeplyWithoutBias) {

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <bit>
 #include <cstddef>
 #include <cstring>
 #include <stdexcept>
@@ -315,21 +314,7 @@ bool Intersector::occluded(const Ray& ray) const {
     return query.tfar < 0.0f;
 }
 
-/// Gives idle lanes the first active lane's ray: what happens to lie in memory there (not a number, say) can keep the library's
-/// coherent traversal from ever ending.
-static void settle_idle_lanes(RayPacket& packet, std::uint32_t active) {
-    constexpr std::uint32_t all = (1U << RayPacket::width) - 1U;
-    if (active == all || active == 0) return;
-    const int first = std::countr_zero(active);
-    const Ray ray{{packet.origin_x[first], packet.origin_y[first], packet.origin_z[first]},
-                  packet.near[first],
-                  {packet.direction_x[first], packet.direction_y[first], packet.direction_z[first]},
-                  packet.far[first]};
-    for (std::uint32_t idle = all & ~active; idle != 0; idle &= idle - 1) packet.set(std::countr_zero(idle), ray);
-}
-
 void Intersector::nearest(RayPacket& packet, std::uint32_t active) const {
-    settle_idle_lanes(packet, active);
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
@@ -341,11 +326,12 @@ void Intersector::nearest(RayPacket& packet, std::uint32_t active) const {
     implementation_->number_hits(packet, active);
 }
 
+// Embree 3.13.5, as Debian compiles it for AVX-512, stores 16 bits of a lane mask and reads 64 in its coherent any-hit traversal of
+// instances: what lies above them on the stack can keep it from ever ending. Its other traversals do not.
 std::uint32_t Intersector::occluded(RayPacket& packet, std::uint32_t active) const {
-    settle_idle_lanes(packet, active);
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
-    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    context.flags = implementation_->owns_root ? RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT : RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
     std::fill_n(packet.time, RayPacket::width, 0.0f);
     std::fill_n(packet.reserved[0], RayPacket::width, ~0U);
     occlude_packet(implementation_->root, context, ValidLanes(active), packet);
