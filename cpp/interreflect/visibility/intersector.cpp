@@ -326,8 +326,8 @@ void Intersector::nearest(RayPacket& packet, std::uint32_t active) const {
     implementation_->number_hits(packet, active);
 }
 
-// Embree 3.13.5, as Debian compiles it for AVX-512, stores 16 bits of a lane mask and reads 64 in its coherent any-hit traversal of
-// instances: what lies above them on the stack can keep it from ever ending. Its other traversals do not.
+// Embree 3.13.5, as Debian compiles it for AVX-512, stores 16 bits of a lane mask and reads 64 in its coherent any-hit traversal
+// of instances: what lies above them on the stack can keep it from ever ending. Its other traversals do not.
 std::uint32_t Intersector::occluded(RayPacket& packet, std::uint32_t active) const {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
