@@ -41,14 +41,19 @@ enum class Handing {
 
 /// The part of one triangle in one cell. Sums are weighted by area.
 struct Contribution {
+    vec4 albedo{0};    // sum; the fourth: area of the solid part, in faces of a voxel
+    vec4 position{0};  // sum, in linear voxels from Domain::reference of the cell; the fourth: area with the holes of the mask
     std::uint32_t cell = 0;
-    float area = 0;    // solid part, in faces of a voxel
-    float total = 0;   // with the holes of its mask
-    vec3 albedo{0};    // sum
-    vec3 position{0};  // sum, in linear voxels from Domain::reference of the cell
-    vec3 normal{0};    // unit
-    float offset = 0;  // of the triangle
-    std::uint32_t back = 0;
+    std::uint32_t side = 0;  // number of the triangle's TriangleSide in its piece of the scene
+
+    float area() const { return albedo.w; }
+    float total() const { return position.w; }
+};
+/// What all contributions of a triangle share.
+struct TriangleSide {
+    vec3 normal;  // unit, front side, world space
+    float offset;
+    std::uint32_t back;  // whether its back reflects
 };
 struct EmissionContribution {
     std::uint32_t cell = 0;

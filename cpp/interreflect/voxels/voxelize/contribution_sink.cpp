@@ -25,22 +25,31 @@ void ContributionSink::add_warped(const vec3& position, float area, bool solid, 
     const VoxelPlace at = domain_.place(p);
     if (!domain_.inside(at.voxels) || (one_grid && at.cascade != triangle_->cascade)) return;
     const ivec3 cell(at.voxels);
-    add(domain_.cell(cell, at.cascade), cell, p - origin_, area, solid, albedo, emitted);
+    add(domain_.cell(cell, at.cascade), p - origin_, area, solid, albedo, emitted);
 }
 
 void ContributionSink::place_part(Contribution& c) const {
+    const vec3 sum(c.position);
+    vec3 placed = sum;
     if (warps_samples_) {
-        c.position += (origin_ - domain_.reference(c.cell)) * c.area;
+        placed += (origin_ - domain_.reference(c.cell)) * c.area();
     } else {
         const vec3 centre = vec3(domain_.coordinates(c.cell)) + 0.5f;
         c.cell += domain_.cell(ivec3(0), triangle_->cascade);
-        if (c.area > 0.0f) c.position = (linear_in_piece(centre + c.position / c.area) - domain_.reference(c.cell)) * c.area;
+        if (c.area() > 0.0f) placed = (linear_in_piece(centre + sum / c.area()) - domain_.reference(c.cell)) * c.area();
     }
     // Areas weigh the parts of a cell against each other: as in space, not as in the warped grid.
-    c.position *= linear_area_;
+    c.position = vec4(placed, c.total()) * linear_area_;
     c.albedo *= linear_area_;
-    c.area *= linear_area_;
-    c.total *= linear_area_;
+}
+
+void ContributionSink::end_emission() {
+    std::size_t kept = first_emission_;
+    for (std::size_t i = first_; i < surface.size(); ++i) {
+        const vec3 sum = emission[first_emission_ + (i - first_)].emission;
+        if (max_component(sum) > 0.0f) emission[kept++] = {surface[i].cell, sum * linear_area_};
+    }
+    emission.resize(kept);
 }
 
 }  // namespace interreflect

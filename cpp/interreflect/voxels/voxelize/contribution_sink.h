@@ -5,7 +5,8 @@
 
 namespace interreflect {
 
-/// Adds up the samples of one triangle by cell before they are kept: neighbouring samples mostly share one of 2 x 2 x 2 cells.
+/// Adds up the samples of one triangle by cell. Where a cell's sum stands is looked up by a hash of its number; in the rare case
+/// that two cells of a triangle share a hash, either may have several sums.
 class ContributionSink {
   public:
     ContributionSink(const Domain& domain, Handing handing, CellMarks& marks)
@@ -17,11 +18,14 @@ class ContributionSink {
           marks_(marks) {}
 
     std::vector<Contribution> surface;
+    std::vector<TriangleSide> sides;
     std::vector<EmissionContribution> emission;
     std::uint64_t samples = 0;
 
     void begin(const VoxelTriangle& triangle) {
         triangle_ = &triangle;
+        first_ = current_ = static_cast<std::uint32_t>(surface.size());
+        first_emission_ = emission.size();
         emits_ = triangle.material->emits();
         if (!plain_) begin_placed();
     }
@@ -40,67 +44,70 @@ class ContributionSink {
         const vec3 floor = glm::floor(at);
         if (!inside(floor)) return;
         ++samples;
-        const float area = triangle_->area, share = solid ? area : 0.0f;
-        keep(domain_.cell(ivec3(floor)), vec4(albedo, 1.0f) * share, vec4((at - floor - 0.5f) * share, area), emitted * share);
+        append(domain_.cell(ivec3(floor)));
+        add_to_current(at - floor - 0.5f, triangle_->area, solid, albedo, emitted);
     }
     /// The same with the cell given, which lies in the domain, and the position from its centre.
     [[gnu::always_inline]] void add(const ivec3& at, const vec3& local, float area, bool solid, const vec3& albedo,
                                     const vec3& emitted) {
-        add(domain_.cell(at), at, local, area, solid, albedo, emitted);
+        add(domain_.cell(at), local, area, solid, albedo, emitted);
     }
     void end() {
-        for (; used_ != 0; used_ &= used_ - 1) flush(slots_[static_cast<unsigned>(std::countr_zero(used_))]);
+        if (surface.size() == first_) return;
+        const auto side = static_cast<std::uint32_t>(sides.size());
+        sides.push_back({triangle_->facing, triangle_->offset, triangle_->material->two_sided ? 1U : 0U});
+        for (std::size_t i = first_; i < surface.size(); ++i) {
+            Contribution& c = surface[i];
+            c.side = side;
+            if (!plain_) place_part(c);
+            if (c.area() > 0.0f) marks_.mark(c.cell);
+        }
+        if (emits_) end_emission();
     }
     void clear() {
         surface.clear();
+        sides.clear();
         emission.clear();
         samples = 0;
     }
 
   private:
-    struct Slot {
-        std::uint32_t cell = 0;
-        vec4 albedo{0}, position{0};  // sums; the fourth ones: of the solid part's area, and of all area
-        vec3 emission{0};
-    };
-    [[gnu::always_inline]] void add(std::uint32_t cell, const ivec3& at, const vec3& local, float area, bool solid,
-                                    const vec3& albedo, const vec3& emitted) {
+    [[gnu::always_inline]] void add(std::uint32_t cell, const vec3& local, float area, bool solid, const vec3& albedo,
+                                    const vec3& emitted) {
         ++samples;
-        const unsigned number = static_cast<unsigned>((at.x & 1) | (at.y & 1) << 1 | (at.z & 1) << 2);
-        Slot& slot = slots_[number];
-        if ((used_ >> number & 1U) == 0 || slot.cell != cell) {
-            if ((used_ >> number & 1U) != 0) flush(slot);
-            used_ |= 1U << number;
-            slot = Slot{};
-            slot.cell = cell;
+        if (current_ == surface.size() || surface[current_].cell != cell) find(cell);
+        add_to_current(local, area, solid, albedo, emitted);
+    }
+    /// Makes the cell's sum the current one.
+    void find(std::uint32_t cell) {
+        std::uint32_t& place = places_[(cell * 2654435769U) >> (32 - places_bits)];
+        // What earlier triangles left there does not matter: it lies before `first_`, or has become this cell's sum.
+        if (place >= first_ && place < surface.size() && surface[place].cell == cell) {
+            current_ = place;
+            return;
         }
+        append(cell);
+        place = current_;
+    }
+    void append(std::uint32_t cell) {
+        current_ = static_cast<std::uint32_t>(surface.size());
+        surface.emplace_back().cell = cell;
+        if (emits_) emission.emplace_back();
+    }
+    [[gnu::always_inline]] void add_to_current(const vec3& local, float area, bool solid, const vec3& albedo, const vec3& emitted) {
         const float share = solid ? area : 0.0f;
-        slot.albedo += vec4(albedo, 1.0f) * share;
-        slot.position += vec4(local * share, area);
-        if (emits_) slot.emission += emitted * share;
+        Contribution& c = surface[current_];
+        c.albedo += vec4(albedo, 1.0f) * share;
+        c.position += vec4(local * share, area);
+        if (emits_) emission[first_emission_ + (current_ - first_)].emission += emitted * share;
     }
     bool inside(const vec3& floor) const {
         const vec3 n(domain_.cells);
         return floor.x >= 0.0f && floor.y >= 0.0f && floor.z >= 0.0f && floor.x < n.x && floor.y < n.y && floor.z < n.z;
     }
-    void flush(const Slot& slot) { keep(slot.cell, slot.albedo, slot.position, slot.emission); }
-    [[gnu::always_inline]] void keep(std::uint32_t cell, const vec4& albedo, const vec4& position, const vec3& emitted) {
-        // Field by field: a whole value would be put together elsewhere and copied.
-        Contribution& c = surface.emplace_back();
-        c.cell = cell;
-        c.area = albedo.w;
-        c.total = position.w;
-        c.albedo = vec3(albedo);
-        c.position = vec3(position);
-        c.normal = triangle_->facing;
-        c.offset = triangle_->offset;
-        c.back = triangle_->material->two_sided ? 1U : 0U;
-        if (!plain_) place_part(c);
-        if (albedo.w > 0.0f) marks_.mark(c.cell);
-        if (emits_ && max_component(emitted) > 0.0f) emission.push_back({c.cell, emitted * linear_area_});
-    }
-
     void begin_placed();
+    /// Gives the emission of the current triangle its cells; none is kept where there is none.
+    void end_emission();
     /// A sample in linear voxels: warped, and put into the grid that it falls into.
     void add_warped(const vec3& position, float area, bool solid, const vec3& albedo, const vec3& emitted);
     /// Brings a contribution's cell and sums from the current triangle's space to the domain's.
@@ -123,8 +130,10 @@ class ContributionSink {
     float linear_area_ = 1;  // of a face of a voxel
     const VoxelTriangle* triangle_ = nullptr;
     bool emits_ = false;
-    unsigned used_ = 0;
-    std::array<Slot, 8> slots_;
+    std::uint32_t first_ = 0, current_ = 0;  // sums of the current triangle, and of the last sample
+    std::size_t first_emission_ = 0;
+    static constexpr int places_bits = 10;
+    std::array<std::uint32_t, 1U << places_bits> places_{};
 };
 
 }  // namespace interreflect

@@ -48,6 +48,11 @@ class Store {
         sorted.items = out;
         return sorted;
     }
+    std::span<const Item> keep(const std::vector<Item>& items) {
+        const std::span<Item> out = take(items.size());
+        std::copy(items.begin(), items.end(), out.begin());
+        return out;
+    }
 
   private:
     static constexpr std::size_t items_of_block = (std::size_t{4} << 20) / sizeof(Item);
@@ -69,69 +74,76 @@ float contrast_of(const vec3& colour) {
     return glm::length(vec2(colour.r - colour.g, colour.r - colour.b)) / (root_2 + colour.r + colour.g + colour.b);
 }
 
+/// A contribution and its triangle's sides.
+struct Part {
+    const Contribution* sums = nullptr;
+    const TriangleSide* side = nullptr;
+};
+
 /// What has been merged into one voxel so far.
 struct Voxel {
-    float area = 0, total = 0;
-    vec3 albedo{0}, position{0}, normal{0}, emission{0};
+    vec4 albedo{0}, position{0};  // as Contribution's
+    vec3 normal{0}, emission{0};
     // The largest part of a triangle, the first of equals, among those that face as the first does, and among the others.
-    const Contribution* largest[2] = {nullptr, nullptr};
+    Part largest[2];
     float largest_area[2] = {0, 0};
-    vec3 facing{0};                           // of the first
-    const Contribution* strongest = nullptr;  // of the greatest contrast, the first of equals; Blend::max alone
+    vec3 facing{0};  // of the first
+    Part strongest;  // of the greatest contrast, the first of equals; Blend::max alone
     float contrast = -1.0f;
 
-    void compare_contrast(const Contribution& c) {
-        if (!(c.area > 0.0f)) return;
-        const float found = contrast_of(c.albedo / c.area);
+    void compare_contrast(const Contribution& c, const TriangleSide& side) {
+        if (!(c.area() > 0.0f)) return;
+        const float found = contrast_of(vec3(c.albedo) / c.area());
         if (!(found > contrast)) return;
         contrast = found;
-        strongest = &c;
+        strongest = {&c, &side};
     }
-    void add(const Contribution& c) {
-        total += c.total;
-        area += c.area;
+    void add(const Contribution& c, const TriangleSide& side) {
         albedo += c.albedo;
         position += c.position;
-        normal += c.normal * c.area;
-        const bool opposed = glm::dot(facing, c.normal) < 0.0f;
-        if (!(c.area > largest_area[opposed])) return;
-        largest[opposed] = &c;
-        largest_area[opposed] = c.area;
-        if (!opposed) facing = c.normal;
+        normal += side.normal * c.area();
+        const bool opposed = glm::dot(facing, side.normal) < 0.0f;
+        if (!(c.area() > largest_area[opposed])) return;
+        largest[opposed] = {&c, &side};
+        largest_area[opposed] = c.area();
+        if (!opposed) facing = side.normal;
     }
 };
 
-VoxelPoint point_of(const Contribution& part, const vec3& centre, const Domain& domain) {
-    return {domain.from_linear(centre + part.position / part.area), part.offset, part.normal, 1};
+VoxelPoint point_of(const Part& part, const vec3& centre, const Domain& domain) {
+    const vec3 mean = vec3(part.sums->position) / part.sums->area();
+    return {domain.from_linear(centre + mean), part.side->offset, part.side->normal, 1};
 }
 
 /// Front and back of a voxel: its largest part; and the largest that faces away, or, where that is but a sliver, the front's own
 /// back.
 void write_points(const Voxel& voxel, const vec3& centre, std::size_t i, VoxelGrid& grid) {
     const bool second = voxel.largest_area[1] > voxel.largest_area[0];
-    const Contribution &front = *voxel.largest[second ? 1 : 0], *other = voxel.largest[second ? 0 : 1];
+    const Part &front = voxel.largest[second ? 1 : 0], &other = voxel.largest[second ? 0 : 1];
     grid.points[i] = point_of(front, centre, grid.domain);
-    const bool two = other != nullptr && other->area > 0.1f * front.area && glm::dot(front.normal, other->normal) < -0.2f;
-    grid.backs[i] = two ? point_of(*other, centre, grid.domain) : grid.points[i];
+    const bool two = other.sums != nullptr && other.sums->area() > 0.1f * front.sums->area() &&
+                     glm::dot(front.side->normal, other.side->normal) < -0.2f;
+    grid.backs[i] = two ? point_of(other, centre, grid.domain) : grid.points[i];
     if (two) return;
-    grid.backs[i].normal = -front.normal;
-    grid.backs[i].reflects = front.back;
+    grid.backs[i].normal = -front.side->normal;
+    grid.backs[i].reflects = front.side->back;
 }
 
 void write_voxel(const Voxel& voxel, std::uint32_t cell, std::size_t i, VoxelGrid& grid) {
     const Domain& domain = grid.domain;
-    const float share = 1.0f / voxel.area;
+    const float area = voxel.albedo.w, total = voxel.position.w, share = 1.0f / area;
+    const Part& strongest = voxel.strongest;
     const vec3 centre = domain.reference(cell);
     grid.cell[i] = cell;
-    grid.albedo[i] = voxel.strongest != nullptr ? voxel.strongest->albedo / voxel.strongest->area : voxel.albedo * share;
+    grid.albedo[i] = strongest.sums != nullptr ? vec3(strongest.sums->albedo) / strongest.sums->area() : vec3(voxel.albedo) * share;
     grid.emission[i] = voxel.emission * share;
-    grid.position[i] = domain.from_linear(centre + voxel.position * share);
-    grid.opacity[i] = voxel.total > voxel.area ? voxel.area / voxel.total : 1.0f;
-    grid.area[i] = voxel.area;
+    grid.position[i] = domain.from_linear(centre + vec3(voxel.position) * share);
+    grid.opacity[i] = total > area ? area / total : 1.0f;
+    grid.area[i] = area;
     // Opposite sides that cancel leave rounding only: 1e-3 of the area is no direction.
     const float length = glm::length(voxel.normal);
-    grid.normal[i] = length > 1e-3f * voxel.area ? voxel.normal / length : vec3(0);
-    if (voxel.strongest != nullptr) grid.normal[i] = voxel.strongest->normal;
+    grid.normal[i] = length > 1e-3f * area ? voxel.normal / length : vec3(0);
+    if (strongest.side != nullptr) grid.normal[i] = strongest.side->normal;
     write_points(voxel, centre, i, grid);
 }
 
@@ -151,6 +163,7 @@ void resize(VoxelGrid& grid, std::size_t size) {
 struct Worker {
     ContributionSink sink;
     Store<Contribution> surface;
+    Store<TriangleSide> sides;
     Store<EmissionContribution> emission;
     std::uint64_t samples = 0;
 };
@@ -159,6 +172,9 @@ struct Worker {
 struct Pieces {
     std::vector<Sorted<Contribution>> surface;
     std::vector<Sorted<EmissionContribution>> emission;
+    std::vector<std::span<const TriangleSide>> sides;
+
+    explicit Pieces(std::size_t count) : surface(count), emission(count), sides(count) {}
 };
 
 void merge_bucket(std::size_t bucket, const Buckets& buckets, const CellMarks& marks, const Pieces& pieces, Blend blend,
@@ -168,12 +184,13 @@ void merge_bucket(std::size_t bucket, const Buckets& buckets, const CellMarks& m
     if (begin >= end) return;
     const std::uint32_t first = marks.before(begin);
     voxels.assign(marks.before(end) - first, Voxel{});
-    for (const auto& piece : pieces.surface)
-        for (const Contribution& c : piece.bucket(bucket))
+    for (std::size_t piece = 0; piece < pieces.surface.size(); ++piece)
+        for (const Contribution& c : pieces.surface[piece].bucket(bucket))
             if (marks.marked(c.cell)) {
+                const TriangleSide& side = pieces.sides[piece][c.side];
                 Voxel& voxel = voxels[marks.before(c.cell) - first];
-                voxel.add(c);
-                if (blend == Blend::max) voxel.compare_contrast(c);
+                voxel.add(c, side);
+                if (blend == Blend::max) voxel.compare_contrast(c, side);
             }
     for (const auto& piece : pieces.emission)
         for (const EmissionContribution& e : piece.bucket(bucket)) voxels[marks.before(e.cell) - first].emission += e.emission;
@@ -201,9 +218,9 @@ VoxelGrid voxelize_triangles(const Scene& scene, const Domain& domain, Handing h
     const auto ranges = triangle_ranges(*scene.geometry);
     const Buckets buckets(domain.cell_count());
     CellMarks marks(domain.cell_count());
-    Pieces pieces{std::vector<Sorted<Contribution>>(ranges.size()), std::vector<Sorted<EmissionContribution>>(ranges.size())};
+    Pieces pieces(ranges.size());
     oneapi::tbb::enumerable_thread_specific<Worker> workers([&] {
-        return Worker{ContributionSink(domain, handing, marks), {}, {}, 0};
+        return Worker{ContributionSink(domain, handing, marks), {}, {}, {}, 0};
     });
     parallel_pieces(ranges.size(), [&](std::size_t i) {
         Worker& worker = workers.local();
@@ -215,6 +232,7 @@ VoxelGrid voxelize_triangles(const Scene& scene, const Domain& domain, Handing h
         };
         for_each_triangle(scene, domain, handing, ranges[i], visit, pass_over);
         pieces.surface[i] = worker.surface.keep(worker.sink.surface, buckets);
+        pieces.sides[i] = worker.sides.keep(worker.sink.sides);
         pieces.emission[i] = worker.emission.keep(worker.sink.emission, buckets);
         worker.samples += worker.sink.samples;
     });
