@@ -37,9 +37,10 @@ vec3 visible_normal(const vec3& normal, const vec3& geometric_normal, const vec3
 
 /// How far a ray's origin must be moved off a triangle so that it cannot meet it again: 64 units in the last place of the largest
 /// coordinate that entered the arithmetic. Relative, so it works at any scale and place.
+inline constexpr float self_hit_share = 0x1p-18f;
 inline float self_hit_offset(const vec3& a, const vec3& b, const vec3& c) {
     const vec3 largest = glm::max(glm::max(glm::abs(a), glm::abs(b)), glm::abs(c));
-    return 0x1p-18f * max_component(largest);
+    return self_hit_share * max_component(largest);
 }
 inline float self_hit_offset(const Geometry& geometry, std::uint32_t instance, std::uint32_t triangle) {
     const Corners corners = world_corners(geometry, instance, triangle);

@@ -10,6 +10,7 @@
 #include "voxels/voxelize/conservative.h"
 #include "voxels/voxelize/projected.h"
 #include "voxels/voxelize/sample_pattern.h"
+#include "voxels/voxelize/unseen.h"
 
 namespace interreflect {
 namespace {
@@ -107,47 +108,6 @@ class Fragments {
     std::span<const vec2> samples_;
     float share_;  // area of a sample
     ContributionSink& sink_;
-};
-
-/// Whether the box around a triangle, seen along its dominant axis, holds no sample of any pixel: so it is with most triangles
-/// where voxels are large.
-class Unseen {
-  public:
-    Unseen(std::span<const vec2> samples, int oversampling)
-        : lanes_(static_cast<int>((samples.size() + 3) / 4 * 4)), scale_(static_cast<float>(oversampling)) {
-        for (std::size_t i = 0; i < most_samples; ++i)
-            u_[i] = samples[i % samples.size()].x, v_[i] = samples[i % samples.size()].y;
-    }
-
-    bool operator()(const vec3* corner, const vec3& cross) const {
-        const vec3 n = glm::abs(cross);
-        // Two axes alike: rounding decides elsewhere.
-        if (n.x > most_alike * std::max(n.y, n.z)) return unseen<1, 2>(corner);
-        if (n.y > most_alike * std::max(n.x, n.z)) return unseen<2, 0>(corner);
-        return n.z > most_alike * std::max(n.x, n.y) && unseen<0, 1>(corner);
-    }
-
-  private:
-    static constexpr float slack = 1e-3f;  // pixels: far more than an edge's crossings are rounded by
-    static constexpr float most_alike = 1.0f + 1e-5f;
-
-    template <int U, int V>
-    bool unseen(const vec3* corner) const {
-        const float least_u = std::min(std::min(corner[0][U], corner[1][U]), corner[2][U]) * scale_ - slack;
-        const float most_u = std::max(std::max(corner[0][U], corner[1][U]), corner[2][U]) * scale_ + slack;
-        const float least_v = std::min(std::min(corner[0][V], corner[1][V]), corner[2][V]) * scale_ - slack;
-        const float most_v = std::max(std::max(corner[0][V], corner[1][V]), corner[2][V]) * scale_ + slack;
-        int seen = 0;
-        for (int begin = 0; begin < lanes_; begin += 4)
-            for (int i = begin; i < begin + 4; ++i)
-                seen |= static_cast<int>(std::ceil(least_u - u_[i]) <= most_u - u_[i]) &
-                        static_cast<int>(std::ceil(least_v - v_[i]) <= most_v - v_[i]);
-        return seen == 0;
-    }
-
-    int lanes_;
-    float scale_;
-    std::array<float, most_samples> u_, v_;  // of the samples, repeated
 };
 
 void rasterize(const VoxelTriangle& t, const LinearBox& box, int oversampling, std::span<const vec2> samples,

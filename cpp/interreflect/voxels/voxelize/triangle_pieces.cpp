@@ -2,8 +2,7 @@
 
 #include <algorithm>
 #include <array>
-
-#include "visibility/surface.h"
+#include <bit>
 
 namespace interreflect {
 namespace {
@@ -191,23 +190,16 @@ class Pieces {
     VoxelTriangle piece_;
 };
 
-/// Corners as linear voxels. False for a triangle without area, or to be passed over.
-bool make_whole(const Scene& scene, const Domain& domain, std::uint32_t instance, std::uint32_t triangle,
-                const PassOver& pass_over, VoxelTriangle& made) {
-    const Corners world = world_corners(*scene.geometry, instance, triangle);
-    made.corner[0] = domain.to_linear(world.a);
-    made.corner[1] = domain.to_linear(world.b);
-    made.corner[2] = domain.to_linear(world.c);
-    const vec3 cross = glm::cross(made.corner[1] - made.corner[0], made.corner[2] - made.corner[0]);
-    if (pass_over && domain.cascades == 1 && pass_over(made.corner, cross)) return false;
+void make_whole(const TrianglePacket& packet, int lane, bool flips, VoxelTriangle& made) {
+    for (int i = 0; i < 3; ++i) made.corner[i] = packet.corner_of(lane, i);
+    const vec3 cross = packet.cross_of(lane);
     const float length = glm::length(cross);
-    if (!(length > 0.0f)) return false;
-    made.normal = cross * (1.0f / (scene.geometry->instances[instance].flips ? -length : length));
+    made.normal = cross * (1.0f / (flips ? -length : length));
     made.facing = made.normal;
     made.area = 0.5f * length;
-    made.offset = self_hit_offset(world.a, world.b, world.c);
+    made.offset = packet.offset[lane];
+    made.crosses = ((packet.crossing >> lane) & 1U) != 0;
     made.cascade = 0;
-    return true;
 }
 
 void add_surface(const Scene& scene, std::uint32_t triangle, VoxelTriangle& made) {
@@ -276,18 +268,26 @@ int VoxelTriangle::level(const Texture& texture, float sample_area) const {
 
 void for_each_triangle(const Scene& scene, const Domain& domain, Handing handing, const TriangleRange& range,
                        const VisitTriangle& visit, const PassOver& pass_over) {
+    const bool plain = domain.plain(), flips = scene.geometry->instances[range.instance].flips;
+    const PacketSource source(*scene.geometry, domain, range.instance);
+    TrianglePacket packet;
     VoxelTriangle triangle;
-    const bool plain = domain.plain();
-    for (std::uint32_t t = range.begin; t < range.end; ++t) {
-        if (!make_whole(scene, domain, range.instance, t, pass_over, triangle)) continue;
-        if (plain && !meets_box(vec3(domain.cells), triangle)) continue;
-        add_surface(scene, t, triangle);
-        if (plain)
-            visit(triangle);
-        else if (handing == Handing::pieces || handing == Handing::sampled)
-            Pieces(domain, handing == Handing::pieces ? most_bend : most_bend_sampled, triangle, visit).cut_up();
-        else
-            hand_whole(domain, handing, triangle, visit);
+    for (std::uint32_t first = range.begin; first < range.end; first += TrianglePacket::width) {
+        load_packet(source, first, std::min<std::uint32_t>(TrianglePacket::width, range.end - first), packet);
+        std::uint32_t lanes = packet.with_area;
+        if (plain) lanes &= ~packet.outside;
+        if (lanes != 0 && pass_over && domain.cascades == 1) lanes &= ~pass_over(packet);
+        for (; lanes != 0; lanes &= lanes - 1) {
+            const int lane = std::countr_zero(lanes);
+            make_whole(packet, lane, flips, triangle);
+            add_surface(scene, first + static_cast<std::uint32_t>(lane), triangle);
+            if (plain)
+                visit(triangle);
+            else if (handing == Handing::pieces || handing == Handing::sampled)
+                Pieces(domain, handing == Handing::pieces ? most_bend : most_bend_sampled, triangle, visit).cut_up();
+            else
+                hand_whole(domain, handing, triangle, visit);
+        }
     }
 }
 

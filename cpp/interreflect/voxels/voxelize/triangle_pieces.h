@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "voxels/voxelize/contribution.h"
+#include "voxels/voxelize/triangle_packet.h"
 
 namespace interreflect {
 
@@ -20,9 +21,9 @@ std::vector<TriangleRange> triangle_ranges(const Geometry& geometry);
 /// Pieces are so small that the warp moves no point of them by more than 1/32 voxel (Handing::sampled: 1/2) from where a flat
 /// piece would have it; they are cut at the faces of a view volume and of nested grids.
 using VisitTriangle = std::function<void(const VoxelTriangle&)>;
-/// Whether a voxelization has no use for a whole triangle, known by its corners in linear voxels and their cross product: asked
-/// before anything else is known of it, and not in nested grids.
-using PassOver = std::function<bool(const vec3* corner, const vec3& cross)>;
+/// The triangles of a packet that a voxelization has no use for: asked before anything else is known of them, and not in nested
+/// grids.
+using PassOver = std::function<std::uint32_t(const TrianglePacket&)>;
 void for_each_triangle(const Scene& scene, const Domain& domain, Handing handing, const TriangleRange& range,
                        const VisitTriangle& visit, const PassOver& pass_over = {});
 
