@@ -17,9 +17,20 @@ namespace {
 
 constexpr int most_samples = 8;
 
-/// Pixels [first, end) of a row.
-struct Span {
-    int first = 0, end = 0;
+/// Pixels [first, end) of a row in which each sample is covered; samples beyond the last repeat the first, four at a time.
+struct Spans {
+    int first[most_samples], end[most_samples];
+};
+
+/// Where the samples of a pixel lie, four side by side.
+struct Samples {
+    std::array<float, most_samples> u{}, v{};
+    std::size_t count, lanes;
+
+    explicit Samples(std::span<const vec2> samples) : count(samples.size()), lanes((samples.size() + 3) / 4 * 4) {
+        for (std::size_t s = 0; s < most_samples; ++s) u[s] = samples[s % count].x, v[s] = samples[s % count].y;
+    }
+    vec2 at(std::size_t s) const { return {u[s], v[s]}; }
 };
 
 /// Edges from their lower to their upper end: two triangles see the same crossings of an edge they share.
@@ -34,56 +45,60 @@ struct Edges {
             slope[i] = (high[i].x - low[i].x) / (high[i].y - low[i].y);  // not finite where nothing crosses
         }
     }
-    /// Pixels of the row that contains `v` whose sample, at `u` in the pixel, is covered. Half-open: [lowest, highest) edges.
-    Span covered(float v, float u, const Projected& p) const {
-        float left = 0, right = 0;
-        bool found = false;
-        for (int i = 0; i < 3; ++i) {
-            if (!(low[i].y <= v && v < high[i].y)) continue;
-            const float x = low[i].x + slope[i] * (v - low[i].y);
-            left = found ? std::min(left, x) : x;
-            right = found ? std::max(right, x) : x;
-            found = true;
-        }
-        if (!found) return {};
+    /// The pixels of row `row` whose samples are covered. Half-open: [lowest, highest) edges.
+    void cover(float row, const Samples& samples, const Projected& p, Spans& covered) const {
         const auto first = static_cast<float>(p.first.x), end = static_cast<float>(p.end.x);
-        return {static_cast<int>(std::clamp(std::ceil(left - u), first, end)),
-                static_cast<int>(std::clamp(std::ceil(right - u), first, end))};
+        for (std::size_t begin = 0; begin < samples.lanes; begin += 4)
+            for (std::size_t s = begin; s < begin + 4; ++s) {
+                const float v = row + samples.v[s];
+                float left = end + 1.0f, right = first - 1.0f;  // where no edge is crossed
+                for (int i = 0; i < 3; ++i) {
+                    const bool crossed = (low[i].y <= v) & (v < high[i].y);
+                    const float x = low[i].x + slope[i] * (v - low[i].y);
+                    left = crossed & (x < left) ? x : left;
+                    right = crossed & (x > right) ? x : right;
+                }
+                left = std::ceil(left - samples.u[s]), right = std::ceil(right - samples.u[s]);
+                left = left < first ? first : left > end ? end : left;
+                right = right < first ? first : right > end ? end : right;
+                covered.first[s] = static_cast<int>(left);
+                covered.end[s] = static_cast<int>(right);
+            }
     }
 };
 
 /// Puts the covered samples of pixels into the sink.
 class Fragments {
   public:
-    Fragments(const VoxelTriangle& t, const Projected& p, std::span<const vec2> samples, ContributionSink& sink)
+    Fragments(const VoxelTriangle& t, const Projected& p, const Samples& samples, ContributionSink& sink)
         : triangle_(t),
           projected_(p),
           look_(t, std::min(t.area, p.slope_area)),
           texcoord_(t, p),
           samples_(samples),
-          share_(p.slope_area / static_cast<float>(samples.size())),
+          share_(p.slope_area / static_cast<float>(samples.count)),
           sink_(sink) {}
 
     /// `covered`: the pixels of the row of each sample.
-    void row(int v, const Span* covered) {
-        int first = covered[0].first, end = covered[0].end;
-        for (std::size_t s = 1; s < samples_.size(); ++s) {
-            if (covered[s].first >= covered[s].end) continue;
+    void row(int v, const Spans& covered) {
+        int first = covered.first[0], end = covered.end[0];
+        for (std::size_t s = 1; s < samples_.count; ++s) {
+            if (covered.first[s] >= covered.end[s]) continue;
             const bool none = first >= end;
-            first = none ? covered[s].first : std::min(first, covered[s].first);
-            end = none ? covered[s].end : std::max(end, covered[s].end);
+            first = none ? covered.first[s] : std::min(first, covered.first[s]);
+            end = none ? covered.end[s] : std::max(end, covered.end[s]);
         }
         for (int u = first; u < end; ++u) pixel(u, v, covered);
     }
 
   private:
-    void pixel(int u, int v, const Span* covered) {
+    void pixel(int u, int v, const Spans& covered) {
         vec2 sum{0};
         int count = 0;
-        for (std::size_t s = 0; s < samples_.size(); ++s) {
-            if (u < covered[s].first || u >= covered[s].end) continue;
-            if (triangle_.mask != nullptr) add(vec2(u, v) + samples_[s], share_);  // masked texels are taken away one by one
-            sum += samples_[s];
+        for (std::size_t s = 0; s < samples_.count; ++s) {
+            if (u < covered.first[s] || u >= covered.end[s]) continue;
+            if (triangle_.mask != nullptr) add(vec2(u, v) + samples_.at(s), share_);  // masked texels are taken away one by one
+            sum += samples_.at(s);
             ++count;
         }
         if (count == 0 || triangle_.mask != nullptr) return;
@@ -105,22 +120,20 @@ class Fragments {
     const Projected& projected_;
     Appearance look_;
     ProjectedTexcoord texcoord_;
-    std::span<const vec2> samples_;
+    const Samples& samples_;
     float share_;  // area of a sample
     ContributionSink& sink_;
 };
 
-void rasterize(const VoxelTriangle& t, const LinearBox& box, int oversampling, std::span<const vec2> samples,
-               ContributionSink& sink) {
+void rasterize(const VoxelTriangle& t, const LinearBox& box, int oversampling, const Samples& samples, ContributionSink& sink) {
     const Projected p(t, box, oversampling);
     refuse_longer_than_most_voxels(max_component(p.upper - p.lower) * p.voxels);
     const Edges edges(p);
-    Span covered[most_samples];
+    Spans covered;
     Fragments fragments(t, p, samples, sink);
     const int last = p.last_of(1, p.upper.y);
     for (int v = p.first_of(1, p.lower.y); v <= last; ++v) {
-        for (std::size_t s = 0; s < samples.size(); ++s)
-            covered[s] = edges.covered(static_cast<float>(v) + samples[s].y, samples[s].x, p);
+        edges.cover(static_cast<float>(v), samples, p, covered);
         fragments.row(v, covered);
     }
 }
@@ -134,13 +147,14 @@ VoxelGrid voxelize(const Rasterization& technique, const Scene& scene, const Dom
     const bool full = technique.conservative == "full";
     const Blend blend = technique.blend == "max" ? Blend::max : Blend::mean;
     const LinearBox box(domain, Handing::grids);
+    const Samples positions(samples);
     return voxelize_triangles(
         scene, domain, Handing::grids,
         [&, full](const VoxelTriangle& triangle, ContributionSink& sink) {
             if (full)
                 rasterize_conservatively(triangle, box, technique.oversampling, samples, sink);
             else
-                rasterize(triangle, box, technique.oversampling, samples, sink);
+                rasterize(triangle, box, technique.oversampling, positions, sink);
         },
         blend, full ? PassOver() : PassOver(Unseen(samples, technique.oversampling)));
 }
