@@ -10,6 +10,7 @@
 // clang-format on
 
 #include "math/parallel.h"
+#include "shading/share/same_surface-inl.h"
 #include "shading/share/window.h"
 
 // Compiled once for every vector width; the widest that the machine has is chosen at run time.
@@ -83,58 +84,54 @@ void load_tile(const GBuffer& gbuffer, const Buffer<vec4>& partial, const float*
     }
 }
 
+HWY_INLINE Vec3 load3(const Planes& from, int plane, int at) {
+    const Tag d;
+    return {hn::LoadU(d, from.plane[plane] + at), hn::LoadU(d, from.plane[plane + 1] + at),
+            hn::LoadU(d, from.plane[plane + 2] + at)};
+}
+
 /// Merges a vector of pixels at `at`.
-template <class D, class V = hn::Vec<D>>
-void merge_vector(D d, const Planes& from, int at, const Tap* taps, const int* first, int phases, V tolerance, float least_cosine,
-                  float* out) {
-    const auto load = [&](int plane, int offset) { return hn::LoadU(d, from.plane[plane] + at + offset); };
-    const V px = load(Planes::px, 0), py = load(Planes::py, 0), pz = load(Planes::pz, 0);
-    const V nx = load(Planes::nx, 0), ny = load(Planes::ny, 0), nz = load(Planes::nz, 0);
-    const V zero = hn::Zero(d), cosine = hn::Set(d, least_cosine);
-    V sum[4] = {zero, zero, zero, zero}, available = zero;
+void merge_vector(const Planes& from, int at, const Window& window, const OwnSurface& own, float* out) {
+    const Tag d;
+    const auto phases = static_cast<int>(window.first.size()) - 1;
+    const Vector zero = hn::Zero(d);
+    Vector sum[4] = {zero, zero, zero, zero}, available = zero;
     for (int phase = 0; phase < phases; ++phase) {
-        V part[4] = {zero, zero, zero, zero}, norm = zero, weight = zero;
-        for (int t = first[phase]; t < first[phase + 1]; ++t) {
-            const int o = taps[t].dx + pad_row * taps[t].dy;
-            const V along =
-                hn::MulAdd(nx, load(Planes::nx, o), hn::MulAdd(ny, load(Planes::ny, o), hn::Mul(nz, load(Planes::nz, o))));
-            const V off_plane =
-                hn::MulAdd(nx, hn::Sub(load(Planes::px, o), px),
-                           hn::MulAdd(ny, hn::Sub(load(Planes::py, o), py), hn::Mul(nz, hn::Sub(load(Planes::pz, o), pz))));
-            const auto same = hn::And(hn::Ge(along, cosine), hn::Le(hn::Abs(off_plane), tolerance));
-            const V w = hn::IfThenElseZero(same, hn::Set(d, taps[t].weight));
+        Vector part[4] = {zero, zero, zero, zero}, norm = zero, weight = zero;
+        for (int t = window.first[phase]; t < window.first[phase + 1]; ++t) {
+            const int there = at + window.taps[t].dx + pad_row * window.taps[t].dy;
+            const auto same = own.holds(load3(from, Planes::px, there), load3(from, Planes::nx, there));
+            const Vector w = hn::IfThenElseZero(same, hn::Set(d, window.taps[t].weight));
             norm = hn::Add(norm, w);
-            weight = hn::IfThenElse(same, load(Planes::weight, o), weight);
-            for (int c = 0; c < 4; ++c) part[c] = hn::MulAdd(w, load(Planes::r + c, o), part[c]);
+            weight = hn::IfThenElse(same, hn::LoadU(d, from.plane[Planes::weight] + there), weight);
+            for (int c = 0; c < 4; ++c) part[c] = hn::MulAdd(w, hn::LoadU(d, from.plane[Planes::r + c] + there), part[c]);
         }
-        const V scale = hn::IfThenElseZero(hn::Gt(norm, zero), hn::Div(hn::Set(d, 1.0f), hn::Max(norm, hn::Set(d, 1e-6f))));
+        const Vector scale = hn::IfThenElseZero(hn::Gt(norm, zero), hn::Div(hn::Set(d, 1.0f), hn::Max(norm, hn::Set(d, 1e-6f))));
         for (int c = 0; c < 4; ++c) sum[c] = hn::MulAdd(part[c], scale, sum[c]);
         available = hn::Add(available, weight);
     }
-    const V scale = hn::IfThenElseZero(hn::Gt(available, zero), hn::Div(hn::Set(d, 1.0f), hn::Max(available, hn::Set(d, 1e-6f))));
+    const Vector scale =
+        hn::IfThenElseZero(hn::Gt(available, zero), hn::Div(hn::Set(d, 1.0f), hn::Max(available, hn::Set(d, 1e-6f))));
     hn::StoreInterleaved4(hn::Mul(sum[0], scale), hn::Mul(sum[1], scale), hn::Mul(sum[2], scale), hn::Mul(sum[3], scale), d, out);
 }
 
 void merge_tile(const GBuffer& gbuffer, const Buffer<vec4>& partial, const float* weights, const Interleaved& share,
-                const Tap* taps, const int* first, int halo, const Tile& tile, Buffer<vec4>& merged) {
-    const hn::ScalableTag<float> d;
+                const Window& window, int halo, const Tile& tile, Buffer<vec4>& merged) {
+    const Tag d;
     const int lanes = static_cast<int>(hn::Lanes(d));
     thread_local Planes planes;
     load_tile(gbuffer, partial, weights, share.width, share.height, tile, halo, planes);
-    const float least_cosine = std::fmax(std::cos(static_cast<float>(share.normal_angle) * degrees_to_radians), 1e-3f);
+    const SharedAngles angles(share, gbuffer);
     const vec3 eye = gbuffer.camera.position;
-    const float half = std::tan(0.5f * gbuffer.camera.fov_x * degrees_to_radians);
-    const float pixel = 2.0f * half / static_cast<float>(gbuffer.width) * static_cast<float>(share.plane_distance);
     for (int y = tile.y0; y < tile.y1; ++y)
         for (int x = tile.x0; x < tile.x1; x += lanes) {
             const int at = (y - tile.y0 + largest_halo) * pad_row + largest_halo + x - tile.x0;
-            const auto ex = hn::Sub(hn::LoadU(d, planes.plane[Planes::px] + at), hn::Set(d, eye.x));
-            const auto ey = hn::Sub(hn::LoadU(d, planes.plane[Planes::py] + at), hn::Set(d, eye.y));
-            const auto ez = hn::Sub(hn::LoadU(d, planes.plane[Planes::pz] + at), hn::Set(d, eye.z));
-            const auto depth = hn::Sqrt(hn::MulAdd(ex, ex, hn::MulAdd(ey, ey, hn::Mul(ez, ez))));
+            const Vec3 position = load3(planes, Planes::px, at);
+            const Vec3 away{hn::Sub(position.x, hn::Set(d, eye.x)), hn::Sub(position.y, hn::Set(d, eye.y)),
+                            hn::Sub(position.z, hn::Set(d, eye.z))};
+            const OwnSurface own(angles, position, load3(planes, Planes::nx, at), hn::Sqrt(dot(away, away)));
             alignas(64) float out[4 * HWY_MAX_BYTES / sizeof(float)];
-            merge_vector(d, planes, at, taps, first, share.width * share.height, hn::Mul(depth, hn::Set(d, pixel)), least_cosine,
-                         out);
+            merge_vector(planes, at, window, own, out);
             const int valid = tile.x1 - x < lanes ? tile.x1 - x : lanes;
             float* to = reinterpret_cast<float*>(merged.data() + static_cast<std::size_t>(y) * gbuffer.width + x);
             for (int i = 0; i < 4 * valid; ++i) to[i] = out[i];
@@ -169,7 +166,7 @@ Buffer<vec4> merge(const Interleaved& share, const GBuffer& gbuffer, std::span<c
     Buffer<vec4> merged(gbuffer.pixels());
     parallel_tiles(gbuffer.width, gbuffer.height, merge_tile_size, [&](const Tile& tile) {
         HWY_DYNAMIC_DISPATCH(merge_tile)
-        (gbuffer, partial, weights.data(), share, window.taps.data(), window.first.data(), halo, tile, merged);
+        (gbuffer, partial, weights.data(), share, window, halo, tile, merged);
     });
     return merged;
 }

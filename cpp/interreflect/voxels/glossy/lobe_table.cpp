@@ -9,7 +9,7 @@
 namespace interreflect {
 namespace {
 
-constexpr int widths = 32, views = 32, samples = 256;
+constexpr int widths = LobeTable::widths, views = LobeTable::views, samples = 256;
 
 float width_of(int i) { return std::max(static_cast<float>(i * i) / ((widths - 1) * (widths - 1)), 1e-3f); }
 float view_of(int i) { return std::max(static_cast<float>(i) / (views - 1), 0.01f); }
@@ -52,26 +52,6 @@ LobeTable::LobeTable(Lobe lobe) : entries_(widths * views) {
         for (int view = 0; view < views; ++view) entries_[width * views + view] = integrate(lobe, width_of(width), view_of(view));
 }
 
-LobeCone LobeTable::at(float alpha, float cosine) const {
-    const float x = std::sqrt(std::clamp(alpha, 0.0f, 1.0f)) * (widths - 1), y = std::clamp(cosine, 0.0f, 1.0f) * (views - 1);
-    const int i = std::min(static_cast<int>(x), widths - 2), j = std::min(static_cast<int>(y), views - 2);
-    const float fx = x - static_cast<float>(i), fy = y - static_cast<float>(j);
-    LobeCone sum;
-    sum.direction = vec2(0);
-    const auto add = [&](const LobeCone& entry, float weight) {
-        sum.scale += entry.scale * weight;
-        sum.bias += entry.bias * weight;
-        sum.direction += entry.direction * weight;
-        sum.half_angle += entry.half_angle * weight;
-    };
-    add(entries_[i * views + j], (1 - fx) * (1 - fy));
-    add(entries_[i * views + j + 1], (1 - fx) * fy);
-    add(entries_[(i + 1) * views + j], fx * (1 - fy));
-    add(entries_[(i + 1) * views + j + 1], fx * fy);
-    sum.direction = glm::normalize(sum.direction);
-    return sum;
-}
-
 namespace {
 template <Lobe lobe>
 const LobeTable& table_of() {
@@ -94,6 +74,21 @@ const LobeTable& lobe_table(Lobe lobe) {
             break;
     }
     return table_of<Lobe::ggx>();
+}
+
+LobeTables::LobeTables(const GBuffer& gbuffer, const Scene& scene) : gbuffer_(&gbuffer), scene_(&scene) {
+    first_.fill(-1);
+    int lobes = 0;
+    for (const auto& material : scene.materials) {
+        if (!material.glossy()) continue;
+        const Lobe lobe = gbuffer.lobe.value_or(material.lobe);
+        int& first = first_[static_cast<std::size_t>(lobe)];
+        if (first >= 0) continue;
+        first = static_cast<int>(entries_.size());
+        const auto table = lobe_table(lobe).entries();
+        entries_.insert(entries_.end(), table.begin(), table.end());
+        only_ = lobes++ == 0 ? first : -1;
+    }
 }
 
 }  // namespace interreflect

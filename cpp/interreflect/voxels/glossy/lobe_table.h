@@ -1,7 +1,10 @@
 /// Moments of the glossy lobes: how much they reflect, where to, and how widely, by width and view.
 #pragma once
+#include <array>
+#include <span>
 #include <vector>
 
+#include "data/gbuffer.h"
 #include "data/scene.h"
 
 namespace interreflect {
@@ -13,12 +16,13 @@ struct LobeCone {
     float half_angle = 0;       // radians: a uniform cone with the lobe's mean resultant length R has cos(half angle) = 2 R - 1
 };
 
-/// Integrals of the lobe over the hemisphere by importance sampling: `samples` Owen-scrambled Sobol points an entry.
+/// Integrals of the lobe over the hemisphere by importance sampling: `samples` Owen-scrambled Sobol points an entry. Entries are
+/// even in sqrt(alpha), row by row, and in the cosine between normal and view; between them they are blended.
 class LobeTable {
   public:
+    static constexpr int widths = 32, views = 32;
     explicit LobeTable(Lobe lobe);
-    /// Bilinear in sqrt(alpha) and the cosine between normal and view.
-    LobeCone at(float alpha, float cosine) const;
+    std::span<const LobeCone> entries() const { return entries_; }
 
   private:
     std::vector<LobeCone> entries_;
@@ -26,5 +30,24 @@ class LobeTable {
 
 /// The table of a lobe; built when first asked for.
 const LobeTable& lobe_table(Lobe lobe);
+
+/// The tables of all lobes that a picture's surfaces have, one after another.
+class LobeTables {
+  public:
+    LobeTables(const GBuffer& gbuffer, const Scene& scene);
+    /// The entry with which a glossy pixel's table begins.
+    int first(std::size_t pixel) const {
+        if (only_ >= 0) return only_;
+        return first_[static_cast<std::size_t>(scene_->materials[scene_->material_of(gbuffer_->triangle[pixel])].lobe)];
+    }
+    const LobeCone* entries() const { return entries_.data(); }
+
+  private:
+    const GBuffer* gbuffer_;
+    const Scene* scene_;
+    std::vector<LobeCone> entries_;
+    std::array<int, lobe_count> first_;  // by lobe; -1 where no surface has it
+    int only_ = -1;                      // where all surfaces have the same lobe
+};
 
 }  // namespace interreflect
