@@ -15,24 +15,6 @@ STEPS = (0.25, 0.5, 1.0)
 RESOLUTION = 64
 
 
-def sheet(height: float, rise: float, half: float) -> ir.Mesh:
-    """A square about the y axis that faces up; `rise` is how much higher it is at +x than in the middle."""
-    corners = [(-half, height - rise, half), (half, height + rise, half), (half, height + rise, -half), (-half, height - rise, -half)]
-    return ir.Mesh(np.array(corners, np.float32), np.array([[0, 1, 2], [0, 2, 3]]), material=ir.Material(albedo=(0.5, 0.5, 0.5)))
-
-
-def layer() -> ir.Scene:
-    """A floor below a layer of voxels, the sun above: opaque between empty. Across the picture the floor rises by two voxels, so that its
-    cones meet the layer at every part of their steps. A floor in the sun would have radiance 1; this one must be dark. A speck above keeps
-    empty voxels over the layer: at the end of the domain a wall goes on for ever."""
-    voxel = 2.0 / (RESOLUTION - 1)
-    camera = ir.Camera(position=(0.0, -2 * voxel, 0.0), target=(0.0, -12 * voxel, 0.0), up=(0.0, 0.0, -1.0), fov_x=60)
-    sun = ir.DirectionalLight(direction=(0, -1, 0), irradiance=(2 * np.pi,) * 3)
-    speck = np.array([(0.95, 8 * voxel, 0.95), (0.96, 8 * voxel, 0.95), (0.95, 8 * voxel, 0.96)], np.float32)
-    meshes = [sheet(-12 * voxel, 3 * voxel, 0.5), sheet(0.25 * voxel, 0.0, 1.0), ir.Mesh(speck, np.array([[0, 1, 2]]))]
-    return ir.Scene(meshes=meshes, lights=[sun], cameras={"below": camera}, name="one layer")
-
-
 def studies() -> Sequence[ir.Study]:
     """Cones of no width through the finest level, one straight up from every pixel: as in the papers, and with each step's opacity
     corrected for its length."""
@@ -45,9 +27,8 @@ def studies() -> Sequence[ir.Study]:
         for corrected in (False, True)
         for step in STEPS
     ]
-    return [
-        ir.Study(name="Rehfeld: one opaque layer", scenes=[layer()], methods=ways, size=(160, 90), bounces=0, reference=NONE, repeats=0)
-    ]
+    scenes = [ir.scenes.opaque_layer(cells=RESOLUTION)]
+    return [ir.Study(name="Rehfeld: one opaque layer", scenes=scenes, methods=ways, size=(160, 90), bounces=0, reference=NONE, repeats=0)]
 
 
 def openness(records: ir.Records, corrected: bool = False) -> dict[float, np.ndarray]:

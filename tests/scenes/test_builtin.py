@@ -19,6 +19,8 @@ VARIANTS = [
     ("ball_on_floor", {}), ("ball_on_floor", {"radius": 0.02}), ("blade", {}), ("blade", {"height": 0.01}),
     ("blocked_sky", {}), ("blocked_sky", {"blocker": "wall", "distance": 0.02}), ("lone_ball", {}), ("lone_ball", {"radius": 0.02}),
     ("glossy_receiver", {}), ("glossy_receiver", {"spot": 2, "exponent": 400}), ("opposed_lights", {}), ("penumbra", {"height": 0.05}),
+    ("dark_room", {}), ("dark_room", {"thickness": 0.01, "rotation": 30, "offset": 0.005}), ("opaque_layer", {"cells": 32}),
+    ("sunlit_floor", {}), ("sunlit_floor", {"tilt": 45}),
     ("sunk_box", {}), ("sunk_box", {"depth": 0.1, "height": 0.05}),
     ("corridors", {}), ("corridors", {"thickness": 0.05, "length": 20}),
     ("grille", {}), ("grille", {"bars": 60, "width": 0.004}),
@@ -73,7 +75,7 @@ def test_the_same_knobs_give_the_same_scene_and_others_another(name, knobs):
         assert make(**knobs).name != make().name
 
 
-@pytest.mark.parametrize("name", ["furnace", "integrating_sphere", "thin_wall", "corridors"])
+@pytest.mark.parametrize("name", ["furnace", "integrating_sphere", "thin_wall", "dark_room", "corridors"])
 def test_rooms_are_closed(name):
     assert all(is_closed(shape_of(mesh)) for mesh in getattr(scenes, name)().meshes)
 

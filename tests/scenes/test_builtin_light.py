@@ -9,7 +9,7 @@ import interreflect as ir
 
 INSIDE = [  # scene, its knobs: closed rooms
     ("furnace", {}), ("furnace", {"shape": "sphere"}), ("integrating_sphere", {}), ("textured_light_box", {}),
-    ("thin_wall", {"rotation": 30}), ("corridors", {}),
+    ("thin_wall", {"rotation": 30}), ("dark_room", {"thickness": 0.005, "rotation": 30}), ("corridors", {}),
 ]  # fmt: skip
 
 

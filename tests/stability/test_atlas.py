@@ -95,8 +95,21 @@ def test_leaks_and_occlusion_are_drawn_against_each_other_with_a_mark_per_method
 def test_methods_are_told_apart_by_the_knobs_that_differ():
     assert list(labels([COARSE, PLAIN])) == ["voxel-cone-tracing", "constant-ambient"]
     assert list(labels([COARSE, V()])) == ["voxel-cone-tracing resolution 16", "voxel-cone-tracing"]
+    assert list(labels({"coarse": COARSE, "the same": COARSE})) == ["coarse", "the same"]
     with pytest.raises(ValueError, match="two methods are the same"):
         labels([COARSE, COARSE])
+
+
+def test_break_points_are_told_in_voxels_only_where_voxels_are_of_one_size(tmp_path):
+    grids = {
+        "even": ir.Grid(resolution=16),
+        "warped": ir.Grid(resolution=16, warp=ir.Logistic()),
+        "nested": ir.Grid(resolution=8, cascades=2),
+    }
+    methods = {name: V(grid=grid) for name, grid in grids.items()}
+    table = ir.stability.atlas(methods, [THIN], seeds=(0,), folder=tmp_path, bisections=1).break_points
+    known = table["voxels"].notna()
+    assert (table["outcome"] == BREAKS).all() and known.tolist() == [True, False, False]
 
 
 def test_an_atlas_of_nothing_is_refused():

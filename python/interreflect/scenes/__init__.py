@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from interreflect.scenes.builtin.closed_forms import closed_form as closed_form
     from interreflect.scenes.builtin.cornell_box import cornell_box as cornell_box
     from interreflect.scenes.builtin.corridors import corridors as corridors
+    from interreflect.scenes.builtin.dark_room import dark_room as dark_room
     from interreflect.scenes.builtin.disk_above_point import disk_above_point as disk_above_point
     from interreflect.scenes.builtin.furnace import furnace as furnace
     from interreflect.scenes.builtin.glossy_plates import glossy_plates as glossy_plates
@@ -20,11 +21,13 @@ if TYPE_CHECKING:
     from interreflect.scenes.builtin.grille import grille as grille
     from interreflect.scenes.builtin.integrating_sphere import integrating_sphere as integrating_sphere
     from interreflect.scenes.builtin.lone_ball import lone_ball as lone_ball
+    from interreflect.scenes.builtin.opaque_layer import opaque_layer as opaque_layer
     from interreflect.scenes.builtin.opposed_lights import opposed_lights as opposed_lights
     from interreflect.scenes.builtin.penumbra import penumbra as penumbra
     from interreflect.scenes.builtin.squares import corner as corner
     from interreflect.scenes.builtin.squares import facing_squares as facing_squares
     from interreflect.scenes.builtin.sunk_box import sunk_box as sunk_box
+    from interreflect.scenes.builtin.sunlit_floor import sunlit_floor as sunlit_floor
     from interreflect.scenes.builtin.textured_light_box import textured_light_box as textured_light_box
     from interreflect.scenes.builtin.thin_wall import thin_wall as thin_wall
 
@@ -37,6 +40,7 @@ _MODULES = {
     "cornell_box": "cornell_box",
     "corner": "squares",
     "corridors": "corridors",
+    "dark_room": "dark_room",
     "disk_above_point": "disk_above_point",
     "facing_squares": "squares",
     "furnace": "furnace",
@@ -45,9 +49,11 @@ _MODULES = {
     "grille": "grille",
     "integrating_sphere": "integrating_sphere",
     "lone_ball": "lone_ball",
+    "opaque_layer": "opaque_layer",
     "opposed_lights": "opposed_lights",
     "penumbra": "penumbra",
     "sunk_box": "sunk_box",
+    "sunlit_floor": "sunlit_floor",
     "textured_light_box": "textured_light_box",
     "thin_wall": "thin_wall",
 }

@@ -6,7 +6,8 @@ from interreflect.stability.invariants import Invariance, invariance
 from interreflect.stability.moving_failures import MOVING
 from interreflect.stability.still_failures import STILL
 from interreflect.stability.temporal import Played, motion
+from interreflect.stability.voxel_failures import VOXELS
 
-failures: tuple[Failure, ...] = (*STILL, *MOVING)
+failures: tuple[Failure, ...] = (*VOXELS, *STILL, *MOVING)
 
 __all__ = ["Atlas", "Failure", "Invariance", "Played", "Reading", "atlas", "failures", "invariance", "motion"]

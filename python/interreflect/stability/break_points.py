@@ -6,7 +6,7 @@ import dataclasses
 import hashlib
 import math
 import zipfile
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -28,7 +28,7 @@ FORMAT = 1
 WAITS, FAILED = "waits", "failed"
 HERE = Path(__file__).resolve().parent
 # Files of this package that decide what is measured; the others decide where, or draw.
-MEASURING = ("failure.py", "moving_failures.py", "reprojection.py", "similar.py", "still_failures.py", "temporal.py")
+MEASURING = ("failure.py", "moving_failures.py", "reprojection.py", "similar.py", "still_failures.py", "temporal.py", "voxel_failures.py")
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -40,7 +40,7 @@ class Cell:
     outcome: str
     words: str
     crossing: Crossing | None = None
-    voxels: int | None = None  # along the longest side, of methods that have a grid
+    voxels: int | None = None  # along the longest side, of methods whose grid has voxels of one size over the scene's bounds
 
     @property
     def text(self) -> str:
@@ -135,7 +135,7 @@ class Atlas:
 
 
 def atlas(
-    methods: Sequence[Any],
+    methods: Sequence[Any] | Mapping[str, Any],
     failures: Iterable[Failure] | None = None,
     seeds: Iterable[int] = range(3),
     sweep: int = 6,
@@ -145,9 +145,10 @@ def atlas(
 ) -> Atlas:
     """Sweeps each failure's knob with each method, brackets and bisects its break point.
 
-    failures: None: all of `ir.stability.failures`. seeds: at least two give an interval from noise. sweep: values of the first pass.
-    folder: where every measured setting is kept, so that an interrupted atlas resumes (None: the user's cache). A method that raises
-    is a cell that says so. ValueError for no methods or for a sweep of fewer than two values.
+    methods: by name, or named after the knobs that tell them apart. failures: None: all of `ir.stability.failures`.
+    seeds: at least two give an interval from noise. sweep: values of the first pass. folder: where every measured setting is kept, so
+    that an interrupted atlas resumes (None: the user's cache). A method that raises is a cell that says so. ValueError for no methods
+    or for a sweep of fewer than two values.
     """
     from interreflect.stability import failures as all_failures
 
@@ -164,8 +165,10 @@ def atlas(
     return Atlas(tuple(cells))
 
 
-def labels(methods: Sequence[Any]) -> dict[str, Any]:
-    """A name for each method: its own, with the knobs in which it differs from its defaults where methods share it."""
+def labels(methods: Sequence[Any] | Mapping[str, Any]) -> dict[str, Any]:
+    """A name for each method: the given one; else its own, with the knobs in which it differs from its defaults where methods share it."""
+    if isinstance(methods, Mapping):
+        return dict(methods)
     named: dict[str, Any] = {}
     kinds = [type(method) for method in methods]
     for method in methods:
@@ -183,12 +186,18 @@ def labels(methods: Sequence[Any]) -> dict[str, Any]:
 def _cell(store: _Store, name: str, method: Any, row: Failure, sweep: int, bisections: int) -> Cell:
     if row.waits:
         return Cell(name, row, WAITS, row.waits)
-    voxels = method.knobs().get("grid.resolution")
     try:
         crossing = find(row, lambda value: store.point(method, row, value), sweep, bisections)
     except Exception as error:
         return Cell(name, row, FAILED, f"{type(error).__name__}: {error}")
-    return Cell(name, row, crossing.outcome, crossing.words, crossing, voxels)
+    return Cell(name, row, crossing.outcome, crossing.words, crossing, _voxels(method))
+
+
+def _voxels(method: Any) -> int | None:
+    """Voxels along the scene's longest side; None where they are not of one size, or not fitted to the scene."""
+    knobs = method.knobs()
+    even = {"grid.warp": "Linear", "grid.cascades": 1, "grid.region": "SceneBounds"}
+    return knobs.get("grid.resolution") if all(knobs.get(path, value) == value for path, value in even.items()) else None
 
 
 @dataclasses.dataclass(frozen=True)

@@ -48,10 +48,10 @@ class Trial:
     def scene(self) -> Scene:
         return self.make(self.value)
 
-    def render(self, camera: str | None = None, scene: Scene | None = None) -> Frame:
-        """The method's frame: of the failure's camera and scene unless others are named."""
-        shown = self.scene if scene is None else scene
-        frame: Frame = self.method.prepare(shown, threads=self.threads).render(camera or self.camera, size=self.size, seed=self.seed)
+    def render(self, camera: str | None = None, scene: Scene | None = None, method: Any = None) -> Frame:
+        """The method's frame: of the failure's camera and scene unless others are named; `method`: the same with other knobs."""
+        shown, by = self.scene if scene is None else scene, self.method if method is None else method
+        frame: Frame = by.prepare(shown, threads=self.threads).render(camera or self.camera, size=self.size, seed=self.seed)
         if not (np.isfinite(frame.image).all() and np.isfinite(frame.indirect).all()):
             raise NotFinite("the picture holds numbers that are not finite", frame.image)
         return frame

@@ -1,4 +1,4 @@
-"""Failures of still pictures: leaks, occlusion, bands, holes, shadows, colours."""
+"""Failures of still pictures: bands, holes, shadows, colours."""
 
 from __future__ import annotations
 
@@ -9,46 +9,10 @@ from interreflect.scenes.camera import Camera
 from interreflect.scenes.scene import Scene
 from interreflect.stability.failure import Failure
 from interreflect.stability.measures import leaks, pictures
+from interreflect.stability.voxel_failures import ONE_PER_CENT, ZERO
 
-ZERO = "closed form: 0"
 REFERENCE = "path-traced reference of the method's bounces; its own noise is the floor"
-ONE_PER_CENT = "the table of failures asks for leaks under 1 %"
 VISIBLE = "2 %, about the least contrast that is seen in a smooth shade (Weber)"
-
-
-def _wall(name: str, **knobs: float) -> Failure:
-    return Failure(
-        name=name,
-        knob="thickness of the wall",
-        unit="extents",
-        easy=8 / 64,
-        hard=1 / 8 / 64,  # 8 to 1/8 voxels of a grid of 64
-        scene=lambda t: scenes.thin_wall(thickness=t, **knobs),
-        measure=leaks.leak,
-        quantity="mean radiance of the dark room over that of the lit room",
-        truth=ZERO,
-        tolerance=0.01,
-        reason=ONE_PER_CENT,
-        stages=("voxelize", "prefilter", "march"),
-    )
-
-
-def _hidden_sky(blocker: str, name: str) -> Failure:
-    return Failure(
-        name=name,
-        knob="distance of the blocker",
-        unit="extents",
-        easy=0.3,
-        hard=0.01,
-        scene=lambda d: scenes.blocked_sky(blocker, d),
-        measure=lambda trial: leaks.occlusion(trial, blocker),
-        quantity="hidden share of the sky, picture minus truth",
-        truth="closed form: row 9" if blocker == "sphere" else "closed form: row 11 with a wall of finite length (Howell B-5)",
-        tolerance=0.05,
-        reason="by choice a twentieth of the sky, on top of the 2 % that the march's contract allows an open floor",
-        stages=("march", "sky", "prefilter"),
-        size=(32, 24),
-    )
 
 
 def _against_truth(metric: pictures.Metric, **row: Any) -> Failure:
@@ -67,11 +31,6 @@ def _glossy_room(**lobe: Any) -> Scene:
 
 
 STILL = (
-    _wall("leak through a thin wall"),
-    _wall("leak through a shifted wall", offset=1 / 256),  # a quarter of a voxel of a grid of 64
-    _wall("leak through a turned wall", rotation=30.0),
-    _hidden_sky("sphere", "occlusion by a ball"),
-    _hidden_sky("wall", "occlusion by a wall"),
     _against_truth(
         pictures.bands,
         name="banding",

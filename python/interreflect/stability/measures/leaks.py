@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from interreflect.scenes.builtin.blade import ALBEDO as BLADE_FLOOR
 from interreflect.scenes.builtin.blocked_sky import ALBEDO as SKY_FLOOR
 from interreflect.scenes.builtin.blocked_sky import sky_share
+from interreflect.scenes.builtin.dark_room import ALBEDO as ROOM_WALLS
 from interreflect.scenes.builtin.lone_ball import lone_ball
 from interreflect.scenes.builtin.penumbra import ALBEDO as PENUMBRA_FLOOR
 from interreflect.scenes.builtin.penumbra import SEEN as PENUMBRA_SEEN
@@ -22,6 +23,12 @@ def leak(trial: Trial) -> Reading:
     """Mean radiance that the camera "dark" sees over that which "lit" sees; the truth is 0."""
     dark, lit = trial.render("dark"), trial.render("lit")
     return Reading(_share(dark.image, lit.image), dark.image, np.zeros_like(dark.image))
+
+
+def sky_inside(trial: Trial) -> Reading:
+    """Mean radiance in a closed room under a sky of 1, over its albedo; the truth is 0."""
+    frame = trial.render()
+    return Reading(_mean(frame.image) / ROOM_WALLS, frame.image, np.zeros_like(frame.image))
 
 
 def leak_on_body(trial: Trial, body: str) -> Reading:
