@@ -1,7 +1,9 @@
 #pragma once
 #include <array>
+#include <glm/gtc/type_ptr.hpp>
 
 #include "voxels/voxelize/contribution.h"
+#include "voxels/voxelize/sample_sums.h"
 
 namespace interreflect {
 
@@ -52,6 +54,21 @@ class ContributionSink {
                                     const vec3& emitted) {
         add(domain_.cell(at), local, area, solid, albedo, emitted);
     }
+    /// Solid samples of a triangle that does not emit; not where every sample is warped.
+    void add(const SampleSums& sums, int count) {
+        for (int i = 0; i < count; ++i) {
+            const std::uint32_t cell = sums.cell[i];
+            if (cell == SampleSums::outside) continue;
+            ++samples;
+            find(cell);
+            Contribution& c = surface[current_];
+            c.albedo += glm::make_vec4(sums.albedo[i].data());
+            c.position += glm::make_vec4(sums.position[i].data());
+        }
+    }
+    /// The current triangle, or piece of one, as those samples must see it.
+    bool takes_sums() const { return !warps_samples_ && !emits_; }
+    vec3 seen(const vec3& position) const { return plain_ ? position : within_piece(position); }
     void end() {
         if (surface.size() == first_) return;
         const auto side = static_cast<std::uint32_t>(sides.size());
@@ -94,7 +111,8 @@ class ContributionSink {
         surface.emplace_back().cell = cell;
         if (emits_) emission.emplace_back();
     }
-    [[gnu::always_inline]] void add_to_current(const vec3& local, float area, bool solid, const vec3& albedo, const vec3& emitted) {
+    [[gnu::always_inline]] void add_to_current(const vec3& local, float area, bool solid, const vec3& albedo,
+                                               const vec3& emitted) {
         const float share = solid ? area : 0.0f;
         Contribution& c = surface[current_];
         c.albedo += vec4(albedo, 1.0f) * share;

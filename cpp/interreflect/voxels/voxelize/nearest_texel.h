@@ -26,6 +26,10 @@ class NearestTexel {
         width_ = chosen.width, height_ = chosen.height;
     }
     bool chosen() const { return texture_ != nullptr; }
+    /// The chosen level of an sRGB texture; null for others.
+    const std::uint32_t* srgb() const { return srgb_; }
+    int width() const { return width_; }
+    int height() const { return height_; }
     [[gnu::always_inline]] vec3 at(const vec2& uv) const {
         if (srgb_ == nullptr) return texture_->nearest(uv, level_);
         const std::uint32_t texel = srgb_[static_cast<std::size_t>(place(uv.y, height_)) * width_ + place(uv.x, width_)];

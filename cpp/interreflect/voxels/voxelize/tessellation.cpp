@@ -4,6 +4,7 @@
 #include <array>
 
 #include "voxels/voxelize/appearance.h"
+#include "voxels/voxelize/inner_vertices.h"
 #include "voxels/voxelize/linear_box.h"
 #include "voxels/voxelize/tessellation_pattern.h"
 
@@ -25,19 +26,26 @@ struct Patch {
 
 class Tessellator {
   public:
-    Tessellator(const Tessellation& technique, const VoxelTriangle& t, const LinearBox& box, ContributionSink& sink)
+    Tessellator(const Tessellation& technique, const VoxelTriangle& t, const LinearBox& box, const ivec3& cells,
+                ContributionSink& sink)
         : triangle_(t),
           box_(box),
           spacing_(static_cast<float>(technique.spacing)),
           most_(technique.max_level),
           split_(technique.split),
           look_(t, std::min(t.area, spacing_ * spacing_)),
-          sink_(sink) {}
+          sink_(sink),
+          plain_look_(sink.takes_sums() && t.mask == nullptr && (t.albedo_map == nullptr || look_.albedo_map.srgb() != nullptr)) {
+        surface_.albedo = t.material->albedo;
+        surface_.srgb = look_.albedo_map.srgb();
+        surface_.width = look_.albedo_map.width(), surface_.height = look_.albedo_map.height();
+        surface_.cells = cells;
+    }
 
     void tessellate(const Patch& patch) {
         if (triangle_.crosses && outside(patch)) return;
         if (in_one_cell(patch)) {
-            add(patch, vec3(1.0f / 3.0f), patch.area);
+            add_one(patch, vec3(1.0f / 3.0f), patch.area);
             return;
         }
         std::array<float, 3> length;
@@ -52,6 +60,7 @@ class Tessellator {
         }
         if (thin) {
             emit_edges(patch, longest, length);
+            flush(patch);
             return;
         }
         TessellationLevels levels;
@@ -129,19 +138,61 @@ class Tessellator {
         });
     }
     void emit(const Patch& patch, const TessellationLevels& levels) {
-        tessellation_rows(levels, [&](const vec3& start, const vec3& along, int count, float share) {
+        const auto row = [&](const vec3& start, const vec3& along, int count, float share) {
             for (int j = 0; j < count; ++j) add(patch, start + along * static_cast<float>(j), share * patch.area);
-        });
+        };
+        tessellation_outer_rows(levels, row);
+        const int inner = TessellationRings(levels).inner;
+        if (!plain_look_ || inner > InnerVertices::most_level) {
+            tessellation_inner_rows(inner, row);
+            return flush(patch);
+        }
+        flush(patch);
+        const int count = inner_vertices().count(inner);
+        for (int i = 0; i < count; i += SampleSums::most)
+            sum(inner_vertices().weights(inner, i, patch.area), std::min(SampleSums::most, count - i));
+    }
+    static const InnerVertices& inner_vertices() {
+        static const InnerVertices vertices;
+        return vertices;
     }
     void add(const Patch& patch, const vec3& weights, float area) {
+        if (!plain_look_) return add_one(patch, weights, area);
+        if (pending_ == SampleSums::most) flush(patch);
+        second_[pending_] = weights.y, third_[pending_] = weights.z, area_[pending_] = area;
+        ++pending_;
+    }
+    /// Brings the vertices of a patch that were added so far into their cells.
+    void flush(const Patch& patch) {
+        if (!plain_look_) return;
+        see(patch);
+        sum({second_.data(), third_.data(), area_.data(), 1.0f}, pending_);
+        pending_ = 0;
+    }
+    void sum(const SampleWeights& weights, int count) {
+        sum_samples(surface_, weights, count, sums_);
+        sink_.add(sums_, count);
+    }
+    void see(const Patch& patch) {
+        surface_.corner = sink_.seen(patch.corner[0]);
+        surface_.texcoord = inside_texcoord(patch, vec3(1, 0, 0));
+        for (int i = 0; i < 2; ++i) {
+            surface_.edge[i] = sink_.seen(patch.corner[i + 1]) - surface_.corner;
+            surface_.texcoord_edge[i] = (patch.texcoord[i + 1] - patch.texcoord[0]) * (1.0f - inwards);
+        }
+    }
+    /// Inside the triangle: on its border, a picture that repeats may show its other end.
+    static vec2 inside_texcoord(const Patch& patch, const vec3& weights) {
+        const vec3 inside = weights * (1.0f - inwards) + inwards / 3.0f;
+        return patch.texcoord[0] * inside.x + patch.texcoord[1] * inside.y + patch.texcoord[2] * inside.z;
+    }
+    void add_one(const Patch& patch, const vec3& weights, float area) {
         const vec3 position = patch.corner[0] * weights.x + patch.corner[1] * weights.y + patch.corner[2] * weights.z;
         if (triangle_.uniform()) {
             sink_.add(position, area, true, triangle_.material->albedo, triangle_.material->emission);
             return;
         }
-        // Inside the triangle: on its border, a picture that repeats may show its other end.
-        const vec3 inside = weights * (1.0f - inwards) + inwards / 3.0f;
-        const vec2 uv = patch.texcoord[0] * inside.x + patch.texcoord[1] * inside.y + patch.texcoord[2] * inside.z;
+        const vec2 uv = inside_texcoord(patch, weights);
         sink_.add(position, area, look_.solid(uv), look_.albedo(uv), look_.emission(uv));
     }
 
@@ -152,6 +203,12 @@ class Tessellator {
     bool split_;
     Appearance look_;
     ContributionSink& sink_;
+    // Vertices are looked at many at a time where their triangle has no mask and its texels are sRGB.
+    bool plain_look_;
+    int pending_ = 0;
+    std::array<float, SampleSums::most + SampleSums::spare> second_, third_, area_;
+    SampledSurface surface_;
+    SampleSums sums_;
 };
 
 }  // namespace
@@ -162,7 +219,7 @@ VoxelGrid voxelize(const Tessellation& technique, const Scene& scene, const Doma
     const Domain one_grid{.cells = domain.cells};
     const LinearBox box(handing == Handing::pieces ? one_grid : domain, handing);
     return voxelize_triangles(scene, domain, handing, [&](const VoxelTriangle& t, ContributionSink& sink) {
-        Tessellator(technique, t, box, sink)
+        Tessellator(technique, t, box, domain.cells, sink)
             .tessellate({{t.corner[0], t.corner[1], t.corner[2]}, {t.texcoord[0], t.texcoord[1], t.texcoord[2]}, t.area});
     });
 }
