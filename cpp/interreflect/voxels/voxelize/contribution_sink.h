@@ -24,10 +24,16 @@ class ContributionSink {
     std::vector<EmissionContribution> emission;
     std::uint64_t samples = 0;
 
-    void begin(const VoxelTriangle& triangle) {
-        triangle_ = &triangle;
+    /// A triangle that does not emit, in a plain domain.
+    void begin(const TriangleSide& side) {
+        side_ = side;
         first_ = current_ = static_cast<std::uint32_t>(surface.size());
         first_emission_ = emission.size();
+        emits_ = false;
+    }
+    void begin(const VoxelTriangle& triangle) {
+        begin({triangle.facing, triangle.offset, triangle.material->two_sided ? 1U : 0U});
+        triangle_ = &triangle;
         emits_ = triangle.material->emits();
         if (!plain_) begin_placed();
     }
@@ -57,14 +63,18 @@ class ContributionSink {
     /// Solid samples of a triangle that does not emit; not where every sample is warped.
     void add(const SampleSums& sums, int count) {
         for (int i = 0; i < count; ++i) {
-            const std::uint32_t cell = sums.cell[i];
-            if (cell == SampleSums::outside) continue;
-            ++samples;
-            find(cell);
-            Contribution& c = surface[current_];
-            c.albedo += glm::make_vec4(sums.albedo[i].data());
-            c.position += glm::make_vec4(sums.position[i].data());
+            if (sums.cell[i] == SampleSums::outside) continue;
+            find(sums.cell[i]);
+            add_to_current(sums, i);
         }
+    }
+    /// One of very few.
+    void add_one_of(const SampleSums& sums, int i) {
+        if (sums.cell[i] == SampleSums::outside) return;
+        for (current_ = first_; current_ < surface.size(); ++current_)
+            if (surface[current_].cell == sums.cell[i]) return add_to_current(sums, i);
+        append(sums.cell[i]);
+        add_to_current(sums, i);
     }
     /// The current triangle, or piece of one, as those samples must see it.
     bool takes_sums() const { return !warps_samples_ && !emits_; }
@@ -72,7 +82,7 @@ class ContributionSink {
     void end() {
         if (surface.size() == first_) return;
         const auto side = static_cast<std::uint32_t>(sides.size());
-        sides.push_back({triangle_->facing, triangle_->offset, triangle_->material->two_sided ? 1U : 0U});
+        sides.push_back(side_);
         for (std::size_t i = first_; i < surface.size(); ++i) {
             Contribution& c = surface[i];
             c.side = side;
@@ -111,6 +121,12 @@ class ContributionSink {
         surface.emplace_back().cell = cell;
         if (emits_) emission.emplace_back();
     }
+    void add_to_current(const SampleSums& sums, int i) {
+        ++samples;
+        Contribution& c = surface[current_];
+        c.albedo += glm::make_vec4(sums.albedo[i].data());
+        c.position += glm::make_vec4(sums.position[i].data());
+    }
     [[gnu::always_inline]] void add_to_current(const vec3& local, float area, bool solid, const vec3& albedo,
                                                const vec3& emitted) {
         const float share = solid ? area : 0.0f;
@@ -147,6 +163,7 @@ class ContributionSink {
     vec3 to_weights_[2] = {}, origin_{0}, along_[2] = {}, middle_{0};
     float linear_area_ = 1;  // of a face of a voxel
     const VoxelTriangle* triangle_ = nullptr;
+    TriangleSide side_{};
     bool emits_ = false;
     std::uint32_t first_ = 0, current_ = 0;  // sums of the current triangle, and of the last sample
     std::size_t first_emission_ = 0;

@@ -135,7 +135,8 @@ void write_voxel(const Voxel& voxel, std::uint32_t cell, std::size_t i, VoxelGri
     const Part& strongest = voxel.strongest;
     const vec3 centre = domain.reference(cell);
     grid.cell[i] = cell;
-    grid.albedo[i] = strongest.sums != nullptr ? vec3(strongest.sums->albedo) / strongest.sums->area() : vec3(voxel.albedo) * share;
+    grid.albedo[i] =
+        strongest.sums != nullptr ? vec3(strongest.sums->albedo) / strongest.sums->area() : vec3(voxel.albedo) * share;
     grid.emission[i] = voxel.emission * share;
     grid.position[i] = domain.from_linear(centre + vec3(voxel.position) * share);
     grid.opacity[i] = total > area ? area / total : 1.0f;
@@ -214,7 +215,7 @@ void CellMarks::number() {
 }
 
 VoxelGrid voxelize_triangles(const Scene& scene, const Domain& domain, Handing handing, const EmitTriangle& emit, Blend blend,
-                             const PassOver& pass_over) {
+                             const EmitPacket& emit_packet) {
     const auto ranges = triangle_ranges(*scene.geometry);
     const Buckets buckets(domain.cell_count());
     CellMarks marks(domain.cell_count());
@@ -229,6 +230,9 @@ VoxelGrid voxelize_triangles(const Scene& scene, const Domain& domain, Handing h
             worker.sink.begin(triangle);
             emit(triangle, worker.sink);
             worker.sink.end();
+        };
+        const PassOver pass_over = [&](const TrianglePacket& packet, std::uint32_t lanes) {
+            return emit_packet ? emit_packet(packet, lanes, worker.sink) : 0U;
         };
         for_each_triangle(scene, domain, handing, ranges[i], visit, pass_over);
         pieces.surface[i] = worker.surface.keep(worker.sink.surface, buckets);

@@ -16,7 +16,9 @@ enum class Blend { mean, max };
 
 /// Calls `emit` for every triangle of the scene and merges what it adds to the sink.
 using EmitTriangle = std::function<void(const VoxelTriangle&, ContributionSink&)>;
+/// As PassOver, with the sink.
+using EmitPacket = std::function<std::uint32_t(const TrianglePacket&, std::uint32_t lanes, ContributionSink&)>;
 VoxelGrid voxelize_triangles(const Scene& scene, const Domain& domain, Handing handing, const EmitTriangle& emit,
-                             Blend blend = Blend::mean, const PassOver& pass_over = {});
+                             Blend blend = Blend::mean, const EmitPacket& emit_packet = {});
 
 }  // namespace interreflect

@@ -148,6 +148,10 @@ VoxelGrid voxelize(const Rasterization& technique, const Scene& scene, const Dom
     const Blend blend = technique.blend == "max" ? Blend::max : Blend::mean;
     const LinearBox box(domain, Handing::grids);
     const Samples positions(samples);
+    const Unseen unseen(samples, technique.oversampling);
+    const EmitPacket pass_over = [&](const TrianglePacket& packet, std::uint32_t, ContributionSink&) {
+        return unseen.of(packet);
+    };
     return voxelize_triangles(
         scene, domain, Handing::grids,
         [&, full](const VoxelTriangle& triangle, ContributionSink& sink) {
@@ -156,7 +160,7 @@ VoxelGrid voxelize(const Rasterization& technique, const Scene& scene, const Dom
             else
                 rasterize(triangle, box, technique.oversampling, positions, sink);
         },
-        blend, full ? PassOver() : PassOver(Unseen(samples, technique.oversampling)));
+        blend, full ? EmitPacket() : pass_over);
 }
 
 }  // namespace interreflect

@@ -6,6 +6,7 @@
 #include "voxels/voxelize/appearance.h"
 #include "voxels/voxelize/inner_vertices.h"
 #include "voxels/voxelize/linear_box.h"
+#include "voxels/voxelize/small_triangles.h"
 #include "voxels/voxelize/tessellation_pattern.h"
 
 namespace interreflect {
@@ -218,10 +219,17 @@ VoxelGrid voxelize(const Tessellation& technique, const Scene& scene, const Doma
     const Handing handing = technique.levels == "warped" ? Handing::pieces : Handing::at_once;
     const Domain one_grid{.cells = domain.cells};
     const LinearBox box(handing == Handing::pieces ? one_grid : domain, handing);
-    return voxelize_triangles(scene, domain, handing, [&](const VoxelTriangle& t, ContributionSink& sink) {
-        Tessellator(technique, t, box, domain.cells, sink)
-            .tessellate({{t.corner[0], t.corner[1], t.corner[2]}, {t.texcoord[0], t.texcoord[1], t.texcoord[2]}, t.area});
-    });
+    const SmallTriangleEmitter small(scene, domain, static_cast<float>(technique.spacing));
+    const EmitPacket emit_small = [&](const TrianglePacket& packet, std::uint32_t lanes, ContributionSink& sink) {
+        return small(packet, lanes, sink);
+    };
+    return voxelize_triangles(
+        scene, domain, handing,
+        [&](const VoxelTriangle& t, ContributionSink& sink) {
+            Tessellator(technique, t, box, domain.cells, sink)
+                .tessellate({{t.corner[0], t.corner[1], t.corner[2]}, {t.texcoord[0], t.texcoord[1], t.texcoord[2]}, t.area});
+        },
+        Blend::mean, domain.plain() ? emit_small : EmitPacket());
 }
 
 }  // namespace interreflect

@@ -1,5 +1,5 @@
-// Packets of triangles as vectors. Sums and products are rounded one by one, as they are outside of vectors: whether a triangle is
-// voxelized must not hang on the processor. Included once for every vector target.
+// Packets of triangles as vectors. Sums and products are rounded one by one, as they are outside of vectors: whether a triangle
+// is voxelized must not hang on the processor. Included once for every vector target.
 #if defined(INTERREFLECT_TRIANGLE_LANES) == defined(HWY_TARGET_TOGGLE)
 #ifdef INTERREFLECT_TRIANGLE_LANES
 #undef INTERREFLECT_TRIANGLE_LANES

@@ -26,10 +26,8 @@ HWY_INLINE Vec3 placed_by(const mat4x3& m, const Vec3& p) {
 }
 
 /// World space.
-HWY_INLINE Vec3 load_corner(const PacketSource& s, IntVector index) {
+HWY_INLINE Vec3 load_corner(const PacketSource& s, IntVector vertex) {
     const Tag d;
-    const IntTag di;
-    const IntVector vertex = hn::GatherIndex(di, reinterpret_cast<const std::int32_t*>(s.triangles), index);
     const IntVector at = hn::Add(hn::Add(vertex, vertex), vertex);
     const Vec3 p{hn::GatherIndex(d, s.positions, at), hn::GatherIndex(d, s.positions + 1, at),
                  hn::GatherIndex(d, s.positions + 2, at)};
@@ -62,6 +60,8 @@ void load_lanes(const PacketSource& s, std::uint32_t first, std::uint32_t count,
     const IntTag di;
     const Vec3 zero{hn::Zero(d), hn::Zero(d), hn::Zero(d)};
     const Vec3 cells{hn::Set(d, s.cells.x), hn::Set(d, s.cells.y), hn::Set(d, s.cells.z)};
+    packet.first = first;
+    packet.flips = s.flips;
     packet.with_area = packet.outside = packet.crossing = 0;
     for (int k = 0; k < TrianglePacket::width; k += static_cast<int>(hn::Lanes(d))) {
         // Those that are not there repeat the last one.
@@ -71,7 +71,10 @@ void load_lanes(const PacketSource& s, std::uint32_t first, std::uint32_t count,
         Vec3 corner[3];
         Vector largest = hn::Zero(d);
         for (int i = 0; i < 3; ++i) {
-            const Vec3 world = load_corner(s, hn::Add(index, hn::Set(di, i)));
+            const auto* numbers = reinterpret_cast<const std::int32_t*>(s.triangles) + i;
+            const IntVector vertex = hn::GatherIndex(di, numbers, index);
+            hn::Store(vertex, di, packet.vertex[i] + k);
+            const Vec3 world = load_corner(s, vertex);
             largest = hn::Max(largest, largest_of(world));
             corner[i] = to_linear(s, world);
             store_axes(corner[i], packet.corner[i], k);
@@ -79,7 +82,8 @@ void load_lanes(const PacketSource& s, std::uint32_t first, std::uint32_t count,
         const Vec3 normal = rounded_cross(difference(corner[1], corner[0]), difference(corner[2], corner[0]));
         store_axes(normal, packet.cross, k);
         hn::Store(hn::Mul(largest, hn::Set(d, self_hit_share)), d, packet.offset + k);
-        const Vector square = hn::Add(hn::Add(hn::Mul(normal.x, normal.x), hn::Mul(normal.y, normal.y)), hn::Mul(normal.z, normal.z));
+        const Vector square =
+            hn::Add(hn::Add(hn::Mul(normal.x, normal.x), hn::Mul(normal.y, normal.y)), hn::Mul(normal.z, normal.z));
         const LaneMask there = hn::RebindMask(d, hn::Lt(hn::Iota(di, k), hn::Set(di, static_cast<std::int32_t>(count))));
         packet.with_area |= bits_of(hn::And(there, hn::Gt(square, hn::Zero(d)))) << k;
         const Vec3 lower = lowest(corner), upper = highest(corner);
@@ -102,7 +106,8 @@ PacketSource::PacketSource(const Geometry& geometry, const Domain& domain, std::
       placed(geometry.instances[instance].identity ? nullptr : &geometry.instances[instance].world_from_local),
       lower(domain.lower),
       cells(domain.cells),
-      voxels(1.0f / domain.voxel_size) {}
+      voxels(1.0f / domain.voxel_size),
+      flips(geometry.instances[instance].flips) {}
 
 void load_packet(const PacketSource& source, std::uint32_t first, std::uint32_t count, TrianglePacket& packet) {
     HWY_DYNAMIC_DISPATCH(load_lanes)(source, first, count, packet);

@@ -190,11 +190,11 @@ class Pieces {
     VoxelTriangle piece_;
 };
 
-void make_whole(const TrianglePacket& packet, int lane, bool flips, VoxelTriangle& made) {
+void make_whole(const TrianglePacket& packet, int lane, VoxelTriangle& made) {
     for (int i = 0; i < 3; ++i) made.corner[i] = packet.corner_of(lane, i);
     const vec3 cross = packet.cross_of(lane);
     const float length = glm::length(cross);
-    made.normal = cross * (1.0f / (flips ? -length : length));
+    made.normal = cross * (1.0f / (packet.flips ? -length : length));
     made.facing = made.normal;
     made.area = 0.5f * length;
     made.offset = packet.offset[lane];
@@ -268,7 +268,7 @@ int VoxelTriangle::level(const Texture& texture, float sample_area) const {
 
 void for_each_triangle(const Scene& scene, const Domain& domain, Handing handing, const TriangleRange& range,
                        const VisitTriangle& visit, const PassOver& pass_over) {
-    const bool plain = domain.plain(), flips = scene.geometry->instances[range.instance].flips;
+    const bool plain = domain.plain();
     const PacketSource source(*scene.geometry, domain, range.instance);
     TrianglePacket packet;
     VoxelTriangle triangle;
@@ -276,10 +276,10 @@ void for_each_triangle(const Scene& scene, const Domain& domain, Handing handing
         load_packet(source, first, std::min<std::uint32_t>(TrianglePacket::width, range.end - first), packet);
         std::uint32_t lanes = packet.with_area;
         if (plain) lanes &= ~packet.outside;
-        if (lanes != 0 && pass_over && domain.cascades == 1) lanes &= ~pass_over(packet);
+        if (lanes != 0 && pass_over && domain.cascades == 1) lanes &= ~pass_over(packet, lanes);
         for (; lanes != 0; lanes &= lanes - 1) {
             const int lane = std::countr_zero(lanes);
-            make_whole(packet, lane, flips, triangle);
+            make_whole(packet, lane, triangle);
             add_surface(scene, first + static_cast<std::uint32_t>(lane), triangle);
             if (plain)
                 visit(triangle);

@@ -21,9 +21,9 @@ std::vector<TriangleRange> triangle_ranges(const Geometry& geometry);
 /// Pieces are so small that the warp moves no point of them by more than 1/32 voxel (Handing::sampled: 1/2) from where a flat
 /// piece would have it; they are cut at the faces of a view volume and of nested grids.
 using VisitTriangle = std::function<void(const VoxelTriangle&)>;
-/// The triangles of a packet that a voxelization has no use for: asked before anything else is known of them, and not in nested
-/// grids.
-using PassOver = std::function<std::uint32_t(const TrianglePacket&)>;
+/// Which of a packet's triangles need not be visited: of no use to a voxelization, or dealt with there and then. Asked before
+/// anything else is known of them, and not in nested grids.
+using PassOver = std::function<std::uint32_t(const TrianglePacket&, std::uint32_t lanes)>;
 void for_each_triangle(const Scene& scene, const Domain& domain, Handing handing, const TriangleRange& range,
                        const VisitTriangle& visit, const PassOver& pass_over = {});
 

@@ -13,7 +13,7 @@ class Unseen {
   public:
     Unseen(std::span<const vec2> samples, int oversampling);
 
-    std::uint32_t operator()(const TrianglePacket& packet) const;
+    std::uint32_t of(const TrianglePacket& packet) const;
 
   private:
     std::array<vec2, 8> samples_;
