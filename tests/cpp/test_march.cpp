@@ -315,7 +315,11 @@ Buffer<vec4> merged(const GBuffer& g, const Interleaved& share, const std::vecto
     for (int y = 0; y < g.height; ++y)
         for (int x = 0; x < g.width; ++x)
             partial[y * g.width + x] = vec4((x < g.width / 2 ? value.left : value.right) * weights[block_of(share).phase(x, y)]);
-    return merge(share, g, weights, std::move(partial));
+    Buffer<vec4> merged(g.pixels());
+    merge(share, g, weights, partial, [&](std::size_t first, std::span<const vec4> values) {
+        std::copy(values.begin(), values.end(), merged.begin() + first);
+    });
+    return merged;
 }
 
 TEST(Interleaved, KeepsAUniformFieldOfAnyBlockAndBleedsOverNoEdge) {

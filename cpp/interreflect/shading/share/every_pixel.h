@@ -1,8 +1,4 @@
 #pragma once
-#include <span>
-#include <utility>
-
-#include "data/gbuffer.h"
 #include "data/technique.h"
 
 namespace interreflect {
@@ -13,7 +9,5 @@ struct EveryPixel {
     static constexpr auto description =
         describe("EveryPixel", "Every pixel does all of its work itself.", Source{"Interreflect"});
 };
-
-inline Buffer<vec4> merge(const EveryPixel&, const GBuffer&, std::span<const float>, Buffer<vec4> partial) { return partial; }
 
 }  // namespace interreflect

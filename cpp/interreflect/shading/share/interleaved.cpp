@@ -1,6 +1,6 @@
 #include "shading/share/interleaved.h"
 
-#include <vector>
+#include <algorithm>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "shading/share/interleaved.cpp"
@@ -9,9 +9,7 @@
 #include <hwy/highway.h>
 // clang-format on
 
-#include "math/parallel.h"
 #include "shading/share/same_surface-inl.h"
-#include "shading/share/window.h"
 
 // Compiled once for every vector width; the widest that the machine has is chosen at run time.
 HWY_BEFORE_NAMESPACE();
@@ -20,7 +18,7 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-constexpr int padded = merge_tile_size + 2 * largest_halo, pad_row = padded + 8;
+constexpr int padded = merge_tile_size + 2 * largest_halo, pad_row = padded + 16;
 
 /// A tile with its halo in parallel planes, so that a tap is an offset.
 struct Planes {
@@ -38,7 +36,7 @@ void load_row(const GBuffer& gbuffer, const Buffer<vec4>& partial, std::size_t r
     const auto* normal = reinterpret_cast<const float*>(gbuffer.normal.data() + row);
     const auto* value = reinterpret_cast<const float*>(partial.data() + row);
     int x = x0;
-    for (; x + lanes <= x1; x += lanes) {
+    for (; x < x1 && x + lanes <= gbuffer.width; x += lanes) {
         const int to_at = at + x - x0;
         const auto hit = hn::RebindMask(d, hn::Ne(hn::LoadU(du, gbuffer.triangle.data() + row + x), hn::Set(du, no_hit)));
         auto a = hn::Zero(d), b = a, c = a, e = a;
@@ -62,21 +60,23 @@ void load_row(const GBuffer& gbuffer, const Buffer<vec4>& partial, std::size_t r
 }
 
 /// A tile and its halo; outside the picture normals are 0.
-void load_tile(const GBuffer& gbuffer, const Buffer<vec4>& partial, const float* weights, int block_width, int block_height,
-               const Tile& tile, int halo, Planes& to) {
+void load_tile(const InterleavedMerge& merge, const Tile& tile, Planes& to) {
+    const GBuffer& gbuffer = merge.gbuffer;
+    const int block_width = merge.share.width, block_height = merge.share.height;
+    const int halo = std::max(block_width, block_height) / 2;
     const int left = tile.x0 - halo < 0 ? 0 : tile.x0 - halo;
     const int right = tile.x1 + halo > gbuffer.width ? gbuffer.width : tile.x1 + halo;
     for (int y = tile.y0 - halo; y < tile.y1 + halo; ++y) {
         const int row = (y - tile.y0 + largest_halo) * pad_row + largest_halo - tile.x0;  // planes' index of x = 0
         const bool inside = y >= 0 && y < gbuffer.height;
-        if (inside) load_row(gbuffer, partial, static_cast<std::size_t>(y) * gbuffer.width, left, right, row + left, to);
+        if (inside) load_row(gbuffer, merge.partial, static_cast<std::size_t>(y) * gbuffer.width, left, right, row + left, to);
         const auto clear = [&](int x) {
             for (int plane = Planes::nx; plane < Planes::count; ++plane) to.plane[plane][row + x] = 0.0f;
         };
         for (int x = tile.x0 - halo; x < (inside ? left : tile.x1 + halo); ++x) clear(x);
         for (int x = inside ? right : tile.x1 + halo; x < tile.x1 + halo; ++x) clear(x);
         if (!inside) continue;
-        const float* row_weights = weights + block_width * (y % block_height);
+        const float* row_weights = merge.weights.data() + block_width * (y % block_height);
         for (int x = left, phase = left % block_width; x < right; ++x) {
             to.plane[Planes::weight][row + x] = row_weights[phase];
             phase = phase + 1 == block_width ? 0 : phase + 1;
@@ -115,13 +115,13 @@ void merge_vector(const Planes& from, int at, const Window& window, const OwnSur
     hn::StoreInterleaved4(hn::Mul(sum[0], scale), hn::Mul(sum[1], scale), hn::Mul(sum[2], scale), hn::Mul(sum[3], scale), d, out);
 }
 
-void merge_tile(const GBuffer& gbuffer, const Buffer<vec4>& partial, const float* weights, const Interleaved& share,
-                const Window& window, int halo, const Tile& tile, Buffer<vec4>& merged) {
+void merge_tile(const InterleavedMerge& merge, const Tile& tile, vec4* merged) {
     const Tag d;
     const int lanes = static_cast<int>(hn::Lanes(d));
     thread_local Planes planes;
-    load_tile(gbuffer, partial, weights, share.width, share.height, tile, halo, planes);
-    const SharedAngles angles(share, gbuffer);
+    const GBuffer& gbuffer = merge.gbuffer;
+    load_tile(merge, tile, planes);
+    const SharedAngles angles(merge.share, gbuffer);
     const vec3 eye = gbuffer.camera.position;
     for (int y = tile.y0; y < tile.y1; ++y)
         for (int x = tile.x0; x < tile.x1; x += lanes) {
@@ -130,11 +130,7 @@ void merge_tile(const GBuffer& gbuffer, const Buffer<vec4>& partial, const float
             const Vec3 away{hn::Sub(position.x, hn::Set(d, eye.x)), hn::Sub(position.y, hn::Set(d, eye.y)),
                             hn::Sub(position.z, hn::Set(d, eye.z))};
             const OwnSurface own(angles, position, load3(planes, Planes::nx, at), hn::Sqrt(dot(away, away)));
-            alignas(64) float out[4 * HWY_MAX_BYTES / sizeof(float)];
-            merge_vector(planes, at, window, own, out);
-            const int valid = tile.x1 - x < lanes ? tile.x1 - x : lanes;
-            float* to = reinterpret_cast<float*>(merged.data() + static_cast<std::size_t>(y) * gbuffer.width + x);
-            for (int i = 0; i < 4 * valid; ++i) to[i] = out[i];
+            merge_vector(planes, at, merge.window, own, &merged[(y - tile.y0) * merge_tile_size + x - tile.x0].x);
         }
 }
 
@@ -160,16 +156,7 @@ Window::Window(int width, int height) {
     first.push_back(static_cast<int>(taps.size()));
 }
 
-Buffer<vec4> merge(const Interleaved& share, const GBuffer& gbuffer, std::span<const float> weights, Buffer<vec4> partial) {
-    const Window window(share.width, share.height);
-    const int halo = std::max(share.width, share.height) / 2;
-    Buffer<vec4> merged(gbuffer.pixels());
-    parallel_tiles(gbuffer.width, gbuffer.height, merge_tile_size, [&](const Tile& tile) {
-        HWY_DYNAMIC_DISPATCH(merge_tile)
-        (gbuffer, partial, weights.data(), share, window, halo, tile, merged);
-    });
-    return merged;
-}
+void InterleavedMerge::tile(const Tile& tile, vec4* merged) const { HWY_DYNAMIC_DISPATCH(merge_tile)(*this, tile, merged); }
 
 }  // namespace interreflect
 #endif

@@ -3,6 +3,8 @@
 
 #include "data/gbuffer.h"
 #include "data/technique.h"
+#include "math/parallel.h"
+#include "shading/share/window.h"
 
 namespace interreflect {
 
@@ -29,6 +31,17 @@ struct Interleaved {
                        Unit::pixels, above(0)});
 };
 
-Buffer<vec4> merge(const Interleaved& share, const GBuffer& gbuffer, std::span<const float> weights, Buffer<vec4> partial);
+/// How the pixels of blocks get what their neighbours gathered: as merge() of share.h.
+struct InterleavedMerge {
+    const Interleaved& share;
+    const GBuffer& gbuffer;
+    std::span<const float> weights;
+    const Buffer<vec4>& partial;
+    Window window{share.width, share.height};
+
+    /// What the pixels of a tile of at most merge_tile_size on a side get, in rows of as many.
+    void tile(const Tile& tile, vec4* merged) const;
+};
+inline constexpr int merge_tile_size = 32;  // pixels
 
 }  // namespace interreflect

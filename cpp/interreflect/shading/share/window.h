@@ -7,8 +7,6 @@ namespace interreflect {
 inline constexpr int largest_block = 8;                 // pixels on a side
 inline constexpr int largest_halo = largest_block / 2;  // pixels that a window reaches past its centre
 
-inline constexpr int merge_tile_size = 32;  // pixels on a side
-
 /// A neighbour, and its weight among those of its phase.
 struct Tap {
     int dx, dy;

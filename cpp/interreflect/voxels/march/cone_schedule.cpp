@@ -10,6 +10,13 @@ namespace {
 
 constexpr float longest_step = 2.0f;  // diameters, that `step_growth` leads to
 
+/// Steps as long as a texel, half of one or two must be so exactly: those exponents need no power.
+float rounded(float exponent) {
+    for (const float simple : {0.5f, 1.0f, 2.0f})
+        if (std::fabs(exponent - simple) < 1e-5f * simple) return simple;
+    return exponent;
+}
+
 /// A schedule as it grows. Lengths in voxels.
 class Walk {
   public:
@@ -76,7 +83,7 @@ class Walk {
         step.distance = distance;
         step.level = static_cast<int>(level);
         step.blend = level - static_cast<float>(step.level);
-        step.exponent = shape_.opacity_correction ? shape_.density * length * std::exp2(-level) : shape_.density;
+        step.exponent = shape_.opacity_correction ? rounded(shape_.density * length * std::exp2(-level)) : shape_.density;
         // Near the finest level a texel is as thin as a surface, whose opacity successive taps have a part of each.
         step.correlation = shape_.correlation * std::clamp(lod - 1.0f, 0.0f, 1.0f);
         step.reach = std::exp2(level);

@@ -147,9 +147,7 @@ GatheredLight march(const DiffuseCones& technique, Pyramids pyramids, const GBuf
         }
     });
 
-    voxels = merge(share, gbuffer, weights, std::move(voxels));
-    if (image) sky = merge(share, gbuffer, weights, std::move(sky));
-    return finish_gathering(gbuffer, voxels, pi * pyramid.scale, sky, work.environment.mean({0, 0, 1}), counts);
+    return merge_gathered(share, gbuffer, weights, voxels, pi * pyramid.scale, sky, work.environment.mean({0, 0, 1}), counts);
 }
 
 }  // namespace interreflect

@@ -45,12 +45,19 @@ HWY_INLINE V own_opacity(D d, V scale, V height, V width, V axis_plane, V axis_s
     return hn::IfThenElse(hn::Gt(aligned, zero), known, mean);
 }
 
-/// Horner's rule, highest power first.
+/// Estrin's scheme, highest power first: cones wait for it, step after step.
 template <class D, class V = hn::Vec<D>, std::size_t n>
 HWY_INLINE V polynomial(D d, V x, const float (&coefficients)[n]) {
-    V sum = hn::Set(d, coefficients[0]);
-    for (std::size_t i = 1; i < n; ++i) sum = hn::MulAdd(sum, x, hn::Set(d, coefficients[i]));
-    return sum;
+    V terms[(n + 1) / 2];
+    const auto of = [&](std::size_t power) HWY_ATTR { return hn::Set(d, coefficients[n - 1 - power]); };
+    for (std::size_t i = 0; i < n / 2; ++i) terms[i] = hn::MulAdd(of(2 * i + 1), x, of(2 * i));
+    if constexpr (n % 2 == 1) terms[n / 2] = of(n - 1);
+    V power = hn::Mul(x, x);
+    for (std::size_t left = (n + 1) / 2; left > 1; left = (left + 1) / 2, power = hn::Mul(power, power)) {
+        for (std::size_t i = 0; i < left / 2; ++i) terms[i] = hn::MulAdd(terms[2 * i + 1], power, terms[2 * i]);
+        if (left % 2 == 1) terms[left / 2] = terms[left - 1];
+    }
+    return terms[0];
 }
 
 /// log2(x), x > 0.

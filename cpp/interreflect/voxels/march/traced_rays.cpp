@@ -147,9 +147,7 @@ GatheredLight march(const TracedRays& technique, Pyramids pyramids, const GBuffe
             });
     });
     const auto weights = tracer.phase_weights();
-    voxels = merge(share, gbuffer, weights, std::move(voxels));
-    sky = merge(share, gbuffer, weights, std::move(sky));
-    return finish_gathering(gbuffer, voxels, pi, sky, vec3(0), counts);
+    return merge_gathered(share, gbuffer, weights, voxels, pi, sky, vec3(0), counts);
 }
 
 GlossyLight glossy(const TracedRays& technique, Pyramids pyramids, const GBuffer& gbuffer, const Scene& scene,
