@@ -10,7 +10,7 @@ import interreflect as ir
 from interreflect.charts.style import COLOURS, MARKERS, dress, new_figure
 
 RESOLUTIONS = (32, 64, 128, 256, 512)
-BRICKS, DENSE = 0, 65536  # MiB that a volume of a dense level may have
+BRICKS, DENSE = 0, 131072  # MiB that a dense level may have
 LARGEST_DENSE = 256  # eight volumes of 512^3 would take gigabytes
 STAGES = ("voxelize", "light_voxels", "prefilter", "march")
 

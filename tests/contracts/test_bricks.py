@@ -11,7 +11,7 @@ import interreflect as ir
 from interreflect import _core
 
 FILTERS = (*(t() for t in _core.stages["prefilter"]["techniques"]), *VARIANTS)
-DENSE, BRICKS = 65536, 0
+DENSE, BRICKS = 131072, 0
 
 
 def in_both(technique, lit):

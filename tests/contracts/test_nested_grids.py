@@ -108,7 +108,7 @@ def test_a_pyramid_beyond_the_memory_cap_is_refused_with_its_bytes(technique, ce
     domain = _core.Domain(lower=[0.0, -0.5, 0.0], voxel_size=1.0, cells=[cells] * 3)
     sizes, volumes = [cells >> i for i in range(cells.bit_length())], 8 if isinstance(technique, ir.OctantCoverage) else 1
     with pytest.raises(ValueError, match=f"would need {sum((n + 2) ** 3 for n in sizes) * volumes * 8} bytes"):
-        ir.prefilter(technique.replace(dense_limit=65536), lit_in(scene, domain, voxelize=ir.SurfaceSampling()))
+        ir.prefilter(technique.replace(dense_limit=131072), lit_in(scene, domain, voxelize=ir.SurfaceSampling()))
 
 
 def gathered(scene, grid, technique=None, prefilter=None, stage="march"):

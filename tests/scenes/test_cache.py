@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from interreflect import cache
-from interreflect.scenes import load, scene_cache
+from interreflect.scenes import load, mapped, scene_cache
 from interreflect.scenes.stored import read_stored, write_scene
 from interreflect.scenes.values import Camera, EnvironmentLight, Mask, Material, Mesh, PointLight, Scene, Texture
 
@@ -64,6 +64,21 @@ def test_a_stored_scene_is_the_scene_and_shares_its_arrays(tmp_path: Path) -> No
     assert fresh.hash == scene.hash  # computed from the arrays that were read, not from the stored digest
     assert again == scene and again.cameras == scene.cameras and again.warnings == scene.warnings and again.unit == scene.unit
     assert again.meshes[0].positions is again.meshes[2].positions and again.meshes[0].material.name == "all"
+
+
+def test_arrays_of_a_stored_scene_stay_in_its_file_and_outlive_it(tmp_path: Path) -> None:
+    scene, path = every_kind_of_value(), tmp_path / "a.scene"
+    with open(path, "wb") as file:
+        write_scene(scene, file)
+    again = read_stored(path)
+    path.unlink()
+    _ = again.core  # lets go of the file's pages
+    assert isinstance(mapped.file_of(again.meshes[0].positions), mapped.MappedFile)
+    assert isinstance(mapped.file_of(again.meshes[0].material.albedo_map.pixels), mapped.MappedFile)
+    assert np.array_equal(again.meshes[0].positions, scene.meshes[0].positions)
+    assert not again.meshes[0].positions.flags.writeable
+    with pytest.raises(ValueError):
+        again.meshes[0].positions.flags.writeable = True
 
 
 @pytest.mark.parametrize("at", [3, 40, 200, -5])

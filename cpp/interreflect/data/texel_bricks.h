@@ -9,7 +9,8 @@
 namespace interreflect {
 
 /// A level's taps in bricks of 4 x 4 x 4, each with the numbers of the 5 x 5 x 5 texels that its taps read, so that no tap leaves
-/// its brick. Number 0 is air; all bricks whose texels are air are one, number 0.
+/// its brick. A texel's number is that of its first volume, the next one's is 1 more. Number 0 is air; all bricks whose texels
+/// are air are one, number 0.
 ///
 /// The tap at b reads texels b and b + 1 of [-1, size] along each axis; it lies in brick (b + 1) / 4.
 struct TexelBricks {

@@ -74,14 +74,14 @@ struct LitVoxels {
 /// single texels go on growing after the level that is one texel: cones wider than the body see it thinned out.
 ///
 /// A level is dense, or it has bricks: only its texels that are not air are then kept, after one that is, in ascending order of
-/// their place (x fastest), and the bricks say which is where.
+/// their place (x fastest), all volumes of one before the next one's, and the bricks say which is where.
 ///
-/// `faces` of a level is the number of its volumes, one after the other: 1; 6, for what is seen through the texel's faces
-/// -x +x -y +y -z +z from outside; or 8, for what is seen along the octants of directions. Of six, an eye looking along d reads
-/// face 0 where d.x > 0 and 1 where d.x < 0 (it looks at the side that faces it), and so on; it blends the three by d * d. Of
-/// eight it reads number (d.x > 0) + 2 (d.y > 0) + 4 (d.z > 0); their opacities agree. The finest level has one or eight. Four
-/// are radiance in two bands of spherical harmonics: it sees number 0 plus d.x, d.y and d.z times the others (whose A is 0), at
-/// least 0.
+/// `faces` of a level is the number of its volumes, one after the other where it is dense: 1; 6, for what is seen through the
+/// texel's faces -x +x -y +y -z +z from outside; or 8, for what is seen along the octants of directions. Of six, an eye looking
+/// along d reads face 0 where d.x > 0 and 1 where d.x < 0 (it looks at the side that faces it), and so on; it blends the three by
+/// d * d. Of eight it reads number (d.x > 0) + 2 (d.y > 0) + 4 (d.z > 0); their opacities agree. The finest level has one or
+/// eight. Four are radiance in two bands of spherical harmonics: it sees number 0 plus d.x, d.y and d.z times the others (whose A
+/// is 0), at least 0.
 struct Pyramid {
     struct Level {
         ivec3 size{0}, origin{0};
@@ -93,10 +93,9 @@ struct Pyramid {
         bool dense() const { return bricks.count.x == 0; }
         std::size_t row() const { return static_cast<std::size_t>(size.x) + 2; }              // dense: texels from y to y + 1
         std::size_t slice() const { return row() * (static_cast<std::size_t>(size.y) + 2); }  // from z to z + 1
-        std::size_t volume() const {                                                          // from face to face
-            return dense() ? slice() * (static_cast<std::size_t>(size.z) + 2)
-                           : texels.size() / (4 * static_cast<std::size_t>(faces));
-        }
+        std::size_t volume() const {
+            return dense() ? slice() * (static_cast<std::size_t>(size.z) + 2) : 1;
+        }  // from face to face
         /// Number of a texel, each coordinate in [-1, size]; its halves start at 4 times this.
         std::size_t index(int x, int y, int z, int face = 0) const {
             const std::size_t first = static_cast<std::size_t>(face) * volume();

@@ -94,10 +94,11 @@ class VoxelConeTracing(Method):
             lights = note(shadow(self.shadow, scene, gbuffer, seed, pyramids=pyramids))
         with profile.stage("sky") as note:
             environment = note(sky(self.sky, scene, gbuffer, seed, gathered=gathered, glossy=reflected))
+        kept = [light_history(self.light_voxels, pyramid) for pyramid in pyramids]
+        del parts, lit, pyramids  # whatever the next frame does not build on
         with profile.stage("shade"):
             indirect = shade(gbuffer, gathered, reflected)
             direct = gbuffer.emission + lights.radiance + environment.radiance
-        kept = [light_history(self.light_voxels, pyramid) for pyramid in pyramids]
         return direct, indirect, kept if apart and kept[0] is not None else kept[0]
 
     def _light(self, scene: Scene, parts: list[_core.VoxelGrid], k: int, seed: int, history: Any) -> _core.LitVoxels:

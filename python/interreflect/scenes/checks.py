@@ -10,6 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from interreflect.scenes.mapped import MappedFile
+
 Vector = tuple[float, float, float]
 
 MAX_INDICES = 2**32  # the core numbers corners with 32 bits
@@ -111,11 +113,11 @@ def raw_array(argument: str, value: ArrayLike, columns: int) -> NDArray[Any]:
 def _is_locked(array: NDArray[Any]) -> bool:
     """Whether nobody can write to the memory of `array`."""
     base: Any = array
-    while isinstance(base, np.ndarray):
-        if base.flags.writeable:
+    while isinstance(base, (np.ndarray, memoryview)):
+        if isinstance(base, np.ndarray) and base.flags.writeable:
             return False
-        base = base.base
-    return base is None or isinstance(base, bytes)
+        base = base.base if isinstance(base, np.ndarray) else base.obj
+    return base is None or isinstance(base, (bytes, MappedFile))
 
 
 def locked(array: NDArray[Any], dtype: type[np.generic]) -> NDArray[Any]:

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from interreflect import _core
 from interreflect.scenes.digest import digest
 from interreflect.scenes.lights import DirectionalLight, EnvironmentLight, PointLight, SpotLight
+from interreflect.scenes.mapped import let_go
 from interreflect.scenes.material import Material
 from interreflect.scenes.texture import Mask, Texture
 
@@ -197,5 +198,6 @@ def compile_scene(scene: Scene) -> Compiled:
         [_light(light) for light in scene.lights if not isinstance(light, EnvironmentLight)],
         environment,
     )
+    let_go(mesh.positions for mesh in scene.meshes)  # the core has its own copies of all arrays
     images = [*tables.images["textures"], *tables.images["masks"]]
     return Compiled(core, hierarchy.milliseconds + sum(image.milliseconds for image in images), (hierarchy, *images))

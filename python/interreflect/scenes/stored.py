@@ -1,4 +1,5 @@
-"""A scene as one file of the cache: a checksum, JSON, and the arrays as they lie in memory, so that reading copies nothing."""
+"""A scene as one file of the cache: a checksum, JSON, and the arrays as they lie in memory, so that reading copies nothing: they
+stay in the file."""
 
 from __future__ import annotations
 
@@ -14,6 +15,7 @@ from numpy.typing import NDArray
 
 from interreflect.scenes.camera import Camera
 from interreflect.scenes.lights import DirectionalLight, EnvironmentLight, PointLight, SpotLight
+from interreflect.scenes.mapped import map_file
 from interreflect.scenes.material import Material
 from interreflect.scenes.mesh import IDENTITY, Mesh
 from interreflect.scenes.scene import Scene
@@ -48,10 +50,10 @@ def array_bytes(scene: Scene) -> int:
 
 def read_stored(path: Path) -> Scene:
     """The scene of `write_scene`. ValueError where the file is not what was written."""
-    data = path.read_bytes()
+    data = map_file(path)
     body = len(MAGIC) + _CHECK
     check = hashlib.blake2b(memoryview(data)[body:], digest_size=_CHECK).digest()
-    if not data.startswith(MAGIC) or data[len(MAGIC) : body] != check:
+    if data[: len(MAGIC)] != MAGIC or data[len(MAGIC) : body] != check:
         raise ValueError(f"{path}: damaged")
     size = int.from_bytes(data[body : body + 8], "little")
     content = json.loads(data[body + 8 : body + 8 + size])

@@ -59,19 +59,18 @@ void write_slices_faces(const LevelView& level, const VoxelView& voxels, int z) 
     }
 }
 
-/// One slice of the second level's six faces, from the voxels themselves; `number`: 1 + voxel of every texel of the two slices of
-/// the finest level below it, 0 where there is none.
-void first_faces_slice(const LevelView& finest, const LevelView& coarse, const VoxelView& voxels, int z,
-                       const std::uint32_t* number) {
+/// One slice of the second level's six faces, from the voxels themselves; number 1 + voxel of the texels of the two slices of the
+/// finest level below it, 0 where there is none.
+void first_faces_slice(const LevelView& finest, const PackedView& packed, const LevelView& coarse, const VoxelView& voxels,
+                       int z) {
     const D d;
-    const int per_slice = finest.nx * finest.ny;
     for (int y = 0; y < coarse.ny; ++y)
         for (int x = 0; x < coarse.nx; ++x) {
             std::uint32_t child[8], any = 0;
             for (int i = 0; i < 8; ++i) {
-                const int cx = 2 * x + (i & 1), cy = 2 * y + ((i >> 1) & 1), cz = i >> 2;
-                const bool inside = cx < finest.nx && cy < finest.ny && 2 * z + cz < finest.nz;
-                child[i] = inside ? number[cz * per_slice + cy * finest.nx + cx] : 0;
+                const int cx = 2 * x + (i & 1), cy = 2 * y + ((i >> 1) & 1), cz = 2 * z + (i >> 2);
+                const bool inside = cx < finest.nx && cy < finest.ny && cz < finest.nz;
+                child[i] = inside ? number_at(packed, cx, cy, cz) : 0;
                 any |= child[i];
             }
             for (int face = 0; face < 6; ++face) {
@@ -104,18 +103,6 @@ HWY_EXPORT(write_slices);
 HWY_EXPORT(write_slices_faces);
 HWY_EXPORT(first_faces_slice);
 HWY_EXPORT(write_packed);
-
-/// The second level's texels of a block from the voxels, whose numbers are those of the finest level's texels.
-void first_faces_block(const TexelBlock& block, const VoxelView& voxels) {
-    const LevelView& fine = block.fine;
-    for (int z = 0; z < block.coarse.nz; ++z) {
-        std::uint32_t number[2 * TexelBlock::side * TexelBlock::side] = {};
-        for (int k = 0; k < std::min(2, fine.nz - 2 * z); ++k)
-            for (int y = 0; y < fine.ny; ++y)
-                for (int x = 0; x < fine.nx; ++x) number[(k * fine.ny + y) * fine.nx + x] = block.number_at(x, y, 2 * z + k);
-        HWY_DYNAMIC_DISPATCH(first_faces_slice)(fine, block.coarse, voxels, z, number);
-    }
-}
 }  // namespace
 
 Pyramid build_anisotropic(const LevelKnobs& knobs, const LitVoxels& lit) {
@@ -127,10 +114,13 @@ Pyramid build_anisotropic(const LevelKnobs& knobs, const LitVoxels& lit) {
         HWY_DYNAMIC_DISPATCH(reduce_slice_faces)(fine, filled, z);
     };
     if (!pyramid.levels[0].dense()) {
-        const auto pack = [](std::uint16_t* texels, std::size_t, const VoxelView& some) {
+        const auto pack = [](std::uint16_t* texels, const VoxelView& some) {
             HWY_DYNAMIC_DISPATCH(write_packed)(texels, some, false);
         };
-        build_levels_in_bricks(pyramid, voxels, pack, reduce, [&](const TexelBlock& block) { first_faces_block(block, voxels); });
+        const auto second = [&](const LevelView& finest, const PackedView& packed, const LevelView& coarse, int z) {
+            HWY_DYNAMIC_DISPATCH(first_faces_slice)(finest, packed, coarse, voxels, z);
+        };
+        build_levels_in_bricks(pyramid, voxels, {pack, of_slices(reduce), 0, second}, reduce);
         return pyramid;
     }
     write_coarse_grids(pyramid, voxels, [](const LevelView& level, const VoxelView& inside, int z) {
@@ -144,7 +134,9 @@ Pyramid build_anisotropic(const LevelKnobs& knobs, const LitVoxels& lit) {
         std::vector<std::uint32_t> number(2 * static_cast<std::size_t>(finest.nx) * static_cast<std::size_t>(finest.ny), 0);
         const auto base = static_cast<std::uint32_t>(static_cast<std::size_t>(z) * number.size());
         for (std::size_t i = inside.begin; i < inside.end; ++i) number[inside.cell[i] - base] = static_cast<std::uint32_t>(i + 1);
-        HWY_DYNAMIC_DISPATCH(first_faces_slice)(finest, coarse, inside, z, number.data());
+        const std::size_t row = static_cast<std::size_t>(finest.nx), slice = row * static_cast<std::size_t>(finest.ny);
+        const PackedView packed{nullptr, number.data() - 2 * static_cast<std::size_t>(z) * slice, row, slice};
+        HWY_DYNAMIC_DISPATCH(first_faces_slice)(finest, packed, coarse, inside, z);
     });
     reduce_coarse(pyramid, reduce);
     pyramid.counts.voxels = lit.grid->size();

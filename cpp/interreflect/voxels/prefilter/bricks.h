@@ -1,4 +1,4 @@
-/// Levels in bricks, made block by block by the kernels that make dense ones.
+/// Levels in bricks, made layer by layer by the kernels that make dense ones.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -9,39 +9,34 @@
 
 namespace interreflect {
 
-/// 4 x 4 x 4 texels of a level that are made, and the 8 x 8 x 8 below them with a border of one, which holds their neighbours: to
-/// a filter they are two small dense levels. Fewer where the level ends.
-struct TexelBlock {
-    static constexpr int side = 8, edge = side + 2, volume = edge * edge * edge;
+/// Makes slice z of `coarse` from slices 2 z and 2 z + 1 of `fine`, where those two and one more on either side are laid out.
+/// `packed`: every volume of the finer level, of which `fine` may have the first only.
+using ReduceLayer = std::function<void(const LevelView& fine, const PackedView& packed, const LevelView& coarse, int z)>;
 
-    LevelView fine, coarse;
-    const std::uint32_t* number;  // of the finer texels, border included, x fastest
+/// Writes voxels [begin, end) one after the other, all volumes of each; `texels`: of voxel 0.
+using PackVoxels = std::function<void(std::uint16_t* texels, const VoxelView& voxels)>;
 
-    std::uint32_t number_at(int x, int y, int z) const { return number[(x + 1) + edge * ((y + 1) + edge * (z + 1))]; }
+struct BrickFilter {
+    PackVoxels pack;
+    ReduceLayer reduce;
+    int laid_out = 0;         // how many volumes `reduce` wants in `fine`; 0: all
+    ReduceLayer second = {};  // for the second level, where that is made in another way
 };
-using ReduceBlock = std::function<void(const TexelBlock&)>;
 
-/// Writes voxels [begin, end) one after the other; `texels`: of voxel 0 in the first volume, whose size is in halves.
-using PackVoxels = std::function<void(std::uint16_t* texels, std::size_t volume, const VoxelView& voxels)>;
-
-/// A filter of single slices, applied to all of a block's.
+/// A filter of single slices.
 template <class Reduce>
-ReduceBlock of_slices(const Reduce& reduce) {
-    return [reduce](const TexelBlock& block) {
-        for (int z = 0; z < block.coarse.nz; ++z) reduce(block.fine, block.coarse, z);
-    };
+ReduceLayer of_slices(const Reduce& reduce) {
+    return [reduce](const LevelView& fine, const PackedView&, const LevelView& coarse, int z) { reduce(fine, coarse, z); };
 }
 
 /// The levels in bricks, and the dense one after them (without its border); returns its number, or that of levels where there is
-/// none. `second`: for the second level, where that is made in another way.
-std::size_t build_bricks(Pyramid& pyramid, const VoxelView& voxels, const PackVoxels& pack, const ReduceBlock& reduce,
-                         const ReduceBlock& second = {});
+/// none.
+std::size_t build_bricks(Pyramid& pyramid, const VoxelView& voxels, const BrickFilter& filter);
 
-/// Every level of a pyramid whose finest is in bricks.
+/// Every level of a pyramid whose finest is in bricks; `reduce`: of dense levels.
 template <class Reduce>
-void build_levels_in_bricks(Pyramid& pyramid, const VoxelView& voxels, const PackVoxels& pack, const Reduce& reduce,
-                            const ReduceBlock& second = {}) {
-    reduce_coarse(pyramid, reduce, build_bricks(pyramid, voxels, pack, of_slices(reduce), second));
+void build_levels_in_bricks(Pyramid& pyramid, const VoxelView& voxels, const BrickFilter& filter, const Reduce& reduce) {
+    reduce_coarse(pyramid, reduce, build_bricks(pyramid, voxels, filter));
     pyramid.counts.voxels = voxels.end;
 }
 

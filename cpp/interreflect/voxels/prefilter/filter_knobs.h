@@ -17,10 +17,10 @@ struct LevelKnobs {
               Unit::none, between(0, 11)},
         Param{
             "dense_limit", &LevelKnobs::dense_limit,
-            "MiB that one volume of a level may need with all of its texels; where one would need more, it and all above a 32nd "
-            "of this are kept in bricks of 4 x 4 x 4, of which only those that are not all air exist: slower to march by a "
-            "quarter, but as large as the surface. Changes no result. Nested grids have none",
-            Unit::none, between(0, 65536)}};
+            "MiB that a level may need with all of its texels; where one would need more, it and all above an eighth of this are "
+            "kept in bricks of 4 x 4 x 4, of which only those that are not all air exist: as large as the surface, and sooner "
+            "made than a large dense level, but slower to march. Changes no result. Nested grids have none",
+            Unit::none, between(0, 131072)}};
 };
 
 /// Of filters that keep surfaces opaque.

@@ -129,10 +129,10 @@ HWY_INLINE void write_harmonics(const VoxelView& voxels, std::size_t i, const Wr
         write(axis + 1, hn::Mul(step, hn::Set(d, voxels.normal[i * voxels.normal_stride + axis])));
 }
 
-/// The four volumes of voxels one after the other; `texels`: of voxel 0.
-void write_packed_harmonics(std::uint16_t* texels, std::size_t volume, const VoxelView& voxels) {
+/// The four volumes of one voxel after the other; `texels`: of voxel 0.
+void write_packed_harmonics(std::uint16_t* texels, const VoxelView& voxels) {
     for (std::size_t i = voxels.begin; i < voxels.end; ++i)
-        write_harmonics(voxels, i, [&](std::size_t v, V texel) HWY_ATTR { store(texel, texels + v * volume + 4 * i); });
+        write_harmonics(voxels, i, [&](std::size_t v, V texel) HWY_ATTR { store(texel, texels + 4 * (4 * i + v)); });
 }
 
 /// The four volumes of slices 2 z and 2 z + 1.
@@ -177,7 +177,7 @@ void build_filtered(Pyramid& pyramid, const VoxelView& voxels, const IsotropicFi
     if (pyramid.levels[0].dense())
         build_levels(pyramid, voxels, filter.tent || filter.columns, write, reduce);
     else
-        build_levels_in_bricks(pyramid, voxels, pack, reduce);
+        build_levels_in_bricks(pyramid, voxels, {pack, of_slices(reduce)}, reduce);
 }
 
 }  // namespace
@@ -192,7 +192,7 @@ Pyramid build_isotropic(Coverage coverage, bool columns, const IsotropicKnobs& k
         [&](const LevelView& level, const VoxelView& voxels, int z) {
             HWY_DYNAMIC_DISPATCH(write_slices)(level, voxels, z, filter.eight_bits);
         },
-        [&](std::uint16_t* texels, std::size_t, const VoxelView& voxels) {
+        [&](std::uint16_t* texels, const VoxelView& voxels) {
             HWY_DYNAMIC_DISPATCH(write_packed)(texels, voxels, filter.eight_bits);
         });
     return pyramid;
@@ -207,9 +207,8 @@ Pyramid build_harmonics(bool columns, const LevelKnobs& knobs, const LitVoxels& 
         [](const LevelView& level, const VoxelView& voxels, int z) {
             HWY_DYNAMIC_DISPATCH(write_slices_harmonics)(level, voxels, z);
         },
-        [](std::uint16_t* texels, std::size_t volume, const VoxelView& voxels) {
-            HWY_DYNAMIC_DISPATCH(write_packed_harmonics)(texels, volume, voxels);
-        });
+        [](std::uint16_t* texels, const VoxelView& voxels) { HWY_DYNAMIC_DISPATCH(write_packed_harmonics)
+                                                             (texels, voxels); });
     return pyramid;
 }
 

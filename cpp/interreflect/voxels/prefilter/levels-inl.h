@@ -44,6 +44,11 @@ HWY_INLINE Children children(const LevelView& fine, int x, int y, int z) {
     return c;
 }
 
+/// Number of a packed texel.
+HWY_INLINE std::uint32_t number_at(const PackedView& packed, int x, int y, int z) {
+    return packed.number[x + y * static_cast<std::ptrdiff_t>(packed.row) + z * static_cast<std::ptrdiff_t>(packed.slice)];
+}
+
 /// Whether all eight are air: four looks at two neighbours.
 HWY_INLINE bool all_air(const LevelView& fine, int x, int y, int z) {
     const std::uint16_t* first = fine.texels + at(fine, 2 * x, 2 * y, 2 * z);

@@ -23,6 +23,13 @@ struct LevelView {
     int nx, ny, nz, faces;
     std::size_t row, slice, volume;
 };
+/// The texels of a level in bricks, and the number of the one at (x, y, z), which begins 4 times that further: 0 is air.
+/// `number`: of texel (0, 0, 0).
+struct PackedView {
+    const std::uint16_t* texels = nullptr;
+    const std::uint32_t* number = nullptr;
+    std::size_t row = 0, slice = 0;
+};
 /// Normals as filters compare them with directions, `stride` floats from one to the next.
 struct Normals {
     const float* first = nullptr;

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -32,6 +33,11 @@ void clear_border(Pyramid::Level& level) {
     }
 }
 
+void raise(std::atomic<std::int32_t>& most, std::int32_t value) {
+    for (std::int32_t known = most; known < value && !most.compare_exchange_weak(known, value);) {
+    }
+}
+
 std::size_t halves_of(const Pyramid::Level& level) { return level.volume() * static_cast<std::size_t>(level.faces) * 4; }
 
 std::string sizes_of(const Domain& domain) {
@@ -43,10 +49,10 @@ std::string sizes_of(const Domain& domain) {
 /// How many of the levels, none of which has texels yet, are to be in bricks. Nested grids fill each other's levels: they have
 /// none.
 std::size_t levels_in_bricks(const Pyramid& pyramid, int dense_limit) {
-    const auto much = static_cast<std::size_t>(dense_limit) << 20, some = much / 32;  // bytes
+    const auto much = static_cast<std::size_t>(dense_limit) << 20, some = much / 8;  // bytes
     std::size_t most = 0, count = 0;
     for (std::size_t i = 0; i < pyramid.levels.size(); ++i) {
-        const std::size_t bytes = pyramid.levels[i].volume() * 4 * sizeof(std::uint16_t);
+        const std::size_t bytes = halves_of(pyramid.levels[i]) * sizeof(std::uint16_t);
         most = std::max(most, bytes);
         if (bytes > some) count = i + 1;
     }
@@ -101,17 +107,22 @@ LevelView above(Pyramid& pyramid, std::size_t i) {
 
 float radiance_scale(const LitVoxels& lit) {
     // Floats that are not negative are ordered as their bits are, which compilers compare many at a time.
-    std::int32_t most = 0, size = 0;
+    std::atomic<std::int32_t> most{0}, size{0};
     for (const Buffer<vec3>* side : {&lit.radiance, &lit.back}) {
         const float* values = floats(*side);
-        for (std::size_t i = 0; i < 3 * side->size(); ++i) {
-            const auto bits = std::bit_cast<std::int32_t>(values[i]);
-            most = std::max(most, bits);
-            size = std::max(size, bits & 0x7fffffff);
-        }
+        parallel_blocks(3 * side->size(), 65536, [&](std::size_t begin, std::size_t end) {
+            std::int32_t largest = 0, longest = 0;
+            for (std::size_t i = begin; i < end; ++i) {
+                const auto bits = std::bit_cast<std::int32_t>(values[i]);
+                largest = std::max(largest, bits);
+                longest = std::max(longest, bits & 0x7fffffff);
+            }
+            raise(most, largest);
+            raise(size, longest);
+        });
     }
     if (size >= 0x7f800000) throw std::invalid_argument("prefilter: a voxel's radiance is not finite");
-    const auto largest = std::bit_cast<float>(most);
+    const auto largest = std::bit_cast<float>(most.load());
     if (!(largest > 0.0f)) return 1.0f;
     // Twice 2^-14 below the least float: its inverse must stay finite.
     return std::ldexp(1.0f, std::clamp(std::ilogb(largest), -110, 127) - 14);
