@@ -1,6 +1,7 @@
 """`./run figures [name ...]`: runs what is missing of an experiment's records and draws its chart from them.
 
-A name is a question (a file of this folder with one `study` and one `chart(records)`), a paper (`freed`, `rehfeld`: a folder, all of its
+A name is a question (a file of this folder with one `study` and one `chart(records)`, or a `measure(folder)` whose findings its chart
+draws), a paper (`freed`, `rehfeld`: a folder, all of its
 files), one file of it (`freed/table_5_1`: `studies()` and `chart(*records)`), or `ledger`. Without a name: every question.
 Pictures go to results/figures. What needs a scene that is not here is left out and said so.
 """
@@ -11,6 +12,7 @@ import argparse
 from collections.abc import Sequence
 from importlib import import_module
 from pathlib import Path
+from typing import Any
 
 import interreflect as ir
 from experiments.shared.keep import FOLDER, records_of
@@ -33,12 +35,17 @@ def names() -> list[str]:
     return [*questions(), *PAPERS, *(name for paper in PAPERS for name in figures_of(paper)), LEDGER]
 
 
+def findings(experiment: Any, folder: Path) -> Any:
+    """Of a question: the records of its study, or what it measures by itself; what `folder` holds already is not measured again."""
+    return ir.run(experiment.study, folder) if hasattr(experiment, "study") else experiment.measure(folder)
+
+
 def draw(name: str, folder: Path) -> list[Path]:
     """The pictures of one question or one file of a paper, drawn from records."""
     experiment = import_module(f"experiments.{name.replace('/', '.')}")
     (folder / name).parent.mkdir(parents=True, exist_ok=True)
     if "/" not in name:
-        chart = experiment.chart(ir.run(experiment.study, folder / name))
+        chart = experiment.chart(findings(experiment, folder / name))
         endings = [".pdf"]
     else:
         chart = experiment.chart(*(records_of(study, folder) for study in experiment.studies()))

@@ -4,13 +4,16 @@ import dataclasses
 import runpy
 from pathlib import Path
 
+import pandas as pd
 import pytest
+from experiments import where_do_voxels_break as where
 from matplotlib.figure import Figure
 
 import interreflect as ir
 
 FOLDER = Path(__file__).parents[2] / "experiments"
-EXPERIMENTS = sorted(path for path in FOLDER.glob("*.py") if path.stem not in ("__init__", "figures"))
+FILES = sorted(path for path in FOLDER.glob("*.py") if path.stem not in ("__init__", "figures"))
+EXPERIMENTS = [path for path in FILES if "\nstudy = " in path.read_text()]
 
 
 def smaller(study):
@@ -46,3 +49,39 @@ def test_an_experiment_is_a_question_whose_records_make_its_chart(path, tmp_path
     assert isinstance(figure, Figure)
     figure.canvas.draw()
     assert all(axes.get_xlabel() and axes.get_ylabel() and axes.has_data() for axes in figure.axes)
+
+
+def test_what_is_no_study_measures_by_itself():
+    assert [path.stem for path in FILES if path not in EXPERIMENTS] == ["where_do_voxels_break"]
+
+
+@pytest.fixture(scope="module")
+def broken(tmp_path_factory):
+    """Break points of coarse voxels in two grids and with a filter that thins walls, at three failures that take no truth."""
+    folder = tmp_path_factory.mktemp("break")
+    rows = ("leak through a thin wall", "occlusion by a wall", "opaque layer between empty ones")
+    small = {"grids": {name: where.grids[name] for name in ("even", "Spherical")}, "filters": {"mean": where.filters["VolumeCoverage"]}}
+    methods = {atlas: {name: m.replace({"grid.resolution": 16}) for name, m in ways.items()} for atlas, ways in small.items()}
+    return folder, where.measure(folder, rows, methods, seeds=(0,), sweep=2, bisections=1)
+
+
+def test_break_points_of_voxels_are_written_drawn_and_told(broken):
+    folder, found = broken
+    assert list(found) == ["grids", "filters"] and all(len(atlas.failures) == 3 for atlas in found.values())
+    kept = pd.read_csv(folder / "break_points.csv", index_col=["atlas", "method", "failure"])
+    assert len(kept) == 3 * 3 and set(kept["outcome"]) <= {"breaks", "never", "always", "reversed"}
+    assert (folder / "grids.html").exists() and (folder / "filters.html").exists()
+    told = where.table(found["filters"])
+    assert told.loc["opaque layer between empty ones", "mean"] == "always"  # corrected for the step, it never closes
+    figure = where.chart(found)
+    figure.canvas.draw()
+    texts = [text.get_text() for axes in figure.axes for text in axes.texts]
+    assert len(texts) == 3 * 3 and "always" in texts
+
+
+def test_break_points_of_voxels_cover_every_grid_and_every_filter():
+    warps = {method.knobs()["grid.warp"] for method in where.grids.values()}
+    assert warps == {technique.__name__ for technique in (ir.Linear, ir.Logistic, ir.CubicSpline, ir.Perspective, ir.Spherical)}
+    assert any(method.knobs()["grid.cascades"] > 1 for method in where.grids.values())
+    assert {m.knobs()["prefilter"] for m in where.filters.values()} == {technique.__name__ for technique in ir.techniques("prefilter")}
+    assert set(where.FAILURES) <= {row.name for row in ir.stability.failures}
