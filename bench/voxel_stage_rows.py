@@ -16,7 +16,7 @@ from interreflect import stages
 
 REPEATS = 9
 REPEATS_OF_LIGHT = 25  # injection is a small difference of two
-SPACINGS = (0.7, 0.7, 0.5)  # of tessellated vertices, voxels: the widest of those tried that leave no holes
+SPACINGS = (0.8, 0.7, 0.7)  # of tessellated vertices, voxels: the widest, in steps of 0.1, that leave no holes
 GLOSSY = "sponza_crytek/glossy.toml"
 SOFTWARE, PROTOTYPE = "software OpenGL, older machine", "prototype, machine of the targets"
 RASTERIZE, TESSELLATE, MAP, INJECT = (

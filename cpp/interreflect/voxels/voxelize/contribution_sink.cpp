@@ -49,7 +49,7 @@ void ContributionSink::end_emission() {
         const vec3 sum = emission[first_emission_ + (i - first_)].emission;
         if (max_component(sum) > 0.0f) emission[kept++] = {surface[i].cell, sum * linear_area_};
     }
-    emission.resize(kept);
+    emission.shrink(kept);
 }
 
 }  // namespace interreflect

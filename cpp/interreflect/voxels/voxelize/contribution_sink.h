@@ -3,6 +3,7 @@
 #include <glm/gtc/type_ptr.hpp>
 
 #include "voxels/voxelize/contribution.h"
+#include "voxels/voxelize/pile.h"
 #include "voxels/voxelize/sample_sums.h"
 
 namespace interreflect {
@@ -19,9 +20,9 @@ class ContributionSink {
           warps_samples_(!plain_ && handing != Handing::pieces && !(handing == Handing::sampled && domain.cascades > 1)),
           marks_(marks) {}
 
-    std::vector<Contribution> surface;
-    std::vector<TriangleSide> sides;
-    std::vector<EmissionContribution> emission;
+    Pile<Contribution> surface;
+    Pile<TriangleSide> sides;
+    Pile<EmissionContribution> emission;
     std::uint64_t samples = 0;
 
     /// A triangle that does not emit, in a plain domain.
@@ -82,7 +83,7 @@ class ContributionSink {
     void end() {
         if (surface.size() == first_) return;
         const auto side = static_cast<std::uint32_t>(sides.size());
-        sides.push_back(side_);
+        sides.push(side_);
         for (std::size_t i = first_; i < surface.size(); ++i) {
             Contribution& c = surface[i];
             c.side = side;
@@ -118,8 +119,8 @@ class ContributionSink {
     }
     void append(std::uint32_t cell) {
         current_ = static_cast<std::uint32_t>(surface.size());
-        surface.emplace_back().cell = cell;
-        if (emits_) emission.emplace_back();
+        surface.push({.cell = cell});
+        if (emits_) emission.push({});
     }
     void add_to_current(const SampleSums& sums, int i) {
         ++samples;

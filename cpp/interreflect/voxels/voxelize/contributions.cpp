@@ -10,9 +10,9 @@
 namespace interreflect {
 namespace {
 
-/// Ranges of cells that are merged at a time: 16,384 cells' voxels stay in a core's own cache.
+/// Ranges of cells that are merged at a time: their voxels stay in a core's own cache, and there are enough for many cores.
 struct Buckets {
-    int shift = 14;
+    int shift = 11;
     std::size_t count = 1;
 
     explicit Buckets(std::size_t cells) {
@@ -36,7 +36,7 @@ struct Sorted {
 template <class Item>
 class Store {
   public:
-    Sorted<Item> keep(const std::vector<Item>& items, const Buckets& buckets) {
+    Sorted<Item> keep(std::span<const Item> items, const Buckets& buckets) {
         Sorted<Item> sorted;
         if (items.empty()) return sorted;
         sorted.first.assign(buckets.count + 1, 0);
@@ -48,7 +48,7 @@ class Store {
         sorted.items = out;
         return sorted;
     }
-    std::span<const Item> keep(const std::vector<Item>& items) {
+    std::span<const Item> keep(std::span<const Item> items) {
         const std::span<Item> out = take(items.size());
         std::copy(items.begin(), items.end(), out.begin());
         return out;
@@ -235,9 +235,9 @@ VoxelGrid voxelize_triangles(const Scene& scene, const Domain& domain, Handing h
             return emit_packet ? emit_packet(packet, lanes, worker.sink) : 0U;
         };
         for_each_triangle(scene, domain, handing, ranges[i], visit, pass_over);
-        pieces.surface[i] = worker.surface.keep(worker.sink.surface, buckets);
-        pieces.sides[i] = worker.sides.keep(worker.sink.sides);
-        pieces.emission[i] = worker.emission.keep(worker.sink.emission, buckets);
+        pieces.surface[i] = worker.surface.keep(worker.sink.surface.span(), buckets);
+        pieces.sides[i] = worker.sides.keep(worker.sink.sides.span());
+        pieces.emission[i] = worker.emission.keep(worker.sink.emission.span(), buckets);
         worker.samples += worker.sink.samples;
     });
 
