@@ -3,8 +3,8 @@
 #include <atomic>
 #include <bit>
 #include <cstdint>
-#include <vector>
 
+#include "data/buffer.h"
 #include "data/scene.h"
 #include "data/voxel_grid.h"
 
@@ -51,9 +51,10 @@ struct Contribution {
 };
 /// What all contributions of a triangle share.
 struct TriangleSide {
-    vec3 normal;  // unit, front side, world space
-    float offset;
+    vec4 normal;         // unit, front side, world space; the fourth: VoxelTriangle::offset
     std::uint32_t back;  // whether its back reflects
+
+    float offset() const { return normal.w; }
 };
 struct EmissionContribution {
     std::uint32_t cell = 0;
@@ -63,7 +64,7 @@ struct EmissionContribution {
 /// The cells that hold something solid, marked by all threads; the marks owe nothing to their order.
 class CellMarks {
   public:
-    explicit CellMarks(std::size_t cells) : words_((cells + 63) / 64), first_(words_.size() + 1) {}
+    explicit CellMarks(std::size_t cells) : words_((cells + 63) / 64, 0), first_(words_.size() + 1) {}
 
     void mark(std::uint32_t cell) {
         const std::uint64_t bit = std::uint64_t{1} << (cell & 63U);
@@ -76,15 +77,22 @@ class CellMarks {
     /// How many marked cells come before this one.
     std::uint32_t before(std::uint64_t cell) const {
         const std::size_t word = cell >> 6U;
-        if (word == words_.size()) return first_.back();
+        if (word == words_.size()) return count();
         const std::uint64_t below = (std::uint64_t{1} << (cell & 63U)) - 1;
         return first_[word] + static_cast<std::uint32_t>(std::popcount(words_[word] & below));
     }
-    std::uint32_t count() const { return first_.back(); }
+    std::uint32_t count() const { return first_[words_.size()]; }
+    /// Calls visit(cell) for the marked cells of [begin, end) in ascending order; both multiples of 64, or the end of all.
+    template <class Visit>
+    void for_each(std::uint64_t begin, std::uint64_t end, const Visit& visit) const {
+        for (std::uint64_t word = begin / 64; word < (end + 63) / 64; ++word)
+            for (std::uint64_t bits = words_[word]; bits != 0; bits &= bits - 1)
+                visit(static_cast<std::uint32_t>(64 * word) + static_cast<std::uint32_t>(std::countr_zero(bits)));
+    }
 
   private:
-    std::vector<std::uint64_t> words_;
-    std::vector<std::uint32_t> first_;
+    Buffer<std::uint64_t> words_;
+    Buffer<std::uint32_t> first_;
 };
 
 }  // namespace interreflect

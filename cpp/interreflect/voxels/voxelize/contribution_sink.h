@@ -33,7 +33,7 @@ class ContributionSink {
         emits_ = false;
     }
     void begin(const VoxelTriangle& triangle) {
-        begin({triangle.facing, triangle.offset, triangle.material->two_sided ? 1U : 0U});
+        begin({vec4(triangle.facing, triangle.offset), triangle.material->two_sided ? 1U : 0U});
         triangle_ = &triangle;
         emits_ = triangle.material->emits();
         if (!plain_) begin_placed();

@@ -83,11 +83,12 @@ struct Part {
 /// What has been merged into one voxel so far.
 struct Voxel {
     vec4 albedo{0}, position{0};  // as Contribution's
-    vec3 normal{0}, emission{0};
+    vec4 normal{0};               // the fourth means nothing
+    vec3 emission{0};
     // The largest part of a triangle, the first of equals, among those that face as the first does, and among the others.
     Part largest[2];
     float largest_area[2] = {0, 0};
-    vec3 facing{0};  // of the first
+    vec4 facing{0};  // normal of the first
     Part strongest;  // of the greatest contrast, the first of equals; Blend::max alone
     float contrast = -1.0f;
 
@@ -102,7 +103,7 @@ struct Voxel {
         albedo += c.albedo;
         position += c.position;
         normal += side.normal * c.area();
-        const bool opposed = glm::dot(facing, side.normal) < 0.0f;
+        const bool opposed = glm::dot(vec3(facing), vec3(side.normal)) < 0.0f;
         if (!(c.area() > largest_area[opposed])) return;
         largest[opposed] = {&c, &side};
         largest_area[opposed] = c.area();
@@ -112,7 +113,7 @@ struct Voxel {
 
 VoxelPoint point_of(const Part& part, const vec3& centre, const Domain& domain) {
     const vec3 mean = vec3(part.sums->position) / part.sums->area();
-    return {domain.from_linear(centre + mean), part.side->offset, part.side->normal, 1};
+    return {domain.from_linear(centre + mean), part.side->offset(), vec3(part.side->normal), 1};
 }
 
 /// Front and back of a voxel: its largest part; and the largest that faces away, or, where that is but a sliver, the front's own
@@ -122,10 +123,10 @@ void write_points(const Voxel& voxel, const vec3& centre, std::size_t i, VoxelGr
     const Part &front = voxel.largest[second ? 1 : 0], &other = voxel.largest[second ? 0 : 1];
     grid.points[i] = point_of(front, centre, grid.domain);
     const bool two = other.sums != nullptr && other.sums->area() > 0.1f * front.sums->area() &&
-                     glm::dot(front.side->normal, other.side->normal) < -0.2f;
+                     glm::dot(vec3(front.side->normal), vec3(other.side->normal)) < -0.2f;
     grid.backs[i] = two ? point_of(other, centre, grid.domain) : grid.points[i];
     if (two) return;
-    grid.backs[i].normal = -front.side->normal;
+    grid.backs[i].normal = -vec3(front.side->normal);
     grid.backs[i].reflects = front.side->back;
 }
 
@@ -142,9 +143,10 @@ void write_voxel(const Voxel& voxel, std::uint32_t cell, std::size_t i, VoxelGri
     grid.opacity[i] = total > area ? area / total : 1.0f;
     grid.area[i] = area;
     // Opposite sides that cancel leave rounding only: 1e-3 of the area is no direction.
-    const float length = glm::length(voxel.normal);
-    grid.normal[i] = length > 1e-3f * area ? voxel.normal / length : vec3(0);
-    if (strongest.side != nullptr) grid.normal[i] = strongest.side->normal;
+    const vec3 normal(voxel.normal);
+    const float length = glm::length(normal);
+    grid.normal[i] = length > 1e-3f * area ? normal / length : vec3(0);
+    if (strongest.side != nullptr) grid.normal[i] = vec3(strongest.side->normal);
     write_points(voxel, centre, i, grid);
 }
 
@@ -196,11 +198,10 @@ void merge_bucket(std::size_t bucket, const Buckets& buckets, const CellMarks& m
     for (const auto& piece : pieces.emission)
         for (const EmissionContribution& e : piece.bucket(bucket)) voxels[marks.before(e.cell) - first].emission += e.emission;
     std::size_t i = 0;
-    for (std::uint64_t cell = begin; cell < end; ++cell)
-        if (marks.marked(static_cast<std::uint32_t>(cell))) {
-            write_voxel(voxels[i], static_cast<std::uint32_t>(cell), first + i, grid);
-            ++i;
-        }
+    marks.for_each(begin, end, [&](std::uint32_t cell) {
+        write_voxel(voxels[i], cell, first + i, grid);
+        ++i;
+    });
 }
 
 }  // namespace
@@ -211,7 +212,7 @@ void CellMarks::number() {
         first_[i] = sum;
         sum += static_cast<std::uint32_t>(std::popcount(words_[i]));
     }
-    first_.back() = sum;
+    first_[words_.size()] = sum;
 }
 
 VoxelGrid voxelize_triangles(const Scene& scene, const Domain& domain, Handing handing, const EmitTriangle& emit, Blend blend,

@@ -163,7 +163,7 @@ void SmallTriangleEmitter::emit(const TrianglePacket& packet, const SmallTriangl
         const int lane = std::countr_zero(lanes);
         vec3 normal(found.normal[0][lane], found.normal[1][lane], found.normal[2][lane]);
         if (packet.flips) normal = -normal;
-        sink.begin({normal, packet.offset[lane], look.two_sided});
+        sink.begin({vec4(normal, packet.offset[lane]), look.two_sided});
         if (((small.in_one_cell >> lane) & 1U) != 0)
             sink.add_one_of(found.sums, lane);
         else
