@@ -55,8 +55,8 @@ struct Edges {
                 for (int i = 0; i < 3; ++i) {
                     const bool crossed = (low[i].y <= v) & (v < high[i].y);
                     const float x = low[i].x + slope[i] * (v - low[i].y);
-                    left = crossed & (x < left) ? x : left;
-                    right = crossed & (x > right) ? x : right;
+                    left = (crossed & (x < left)) ? x : left;
+                    right = (crossed & (x > right)) ? x : right;
                 }
                 left = std::ceil(left - samples.u[s]), right = std::ceil(right - samples.u[s]);
                 left = left < first ? first : left > end ? end : left;
