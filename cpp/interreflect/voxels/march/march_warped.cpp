@@ -9,6 +9,7 @@
 
 #include "voxels/march/opacity-inl.h"
 #include "voxels/march/taps-inl.h"
+#include "voxels/march/view_lanes-inl.h"
 #include "voxels/march/warp_lanes-inl.h"
 
 // Roofline: as march_cones.cpp. Every cone of a vector has a level of its own, so addresses take three gathers from tables of a
@@ -187,7 +188,8 @@ ConeCounts march_vector(const Map& map, const LevelTable& table, const ConeSched
         const V whole = hn::Floor(lod), blend = hn::Sub(lod, whole);
         const V size = exp2_of(d, lod);  // of a texel, voxels
         const V reach = hn::Div(size, hn::Max(at.stretch, hn::Set(d, 1e-20f)));
-        active = hn::And(active, hn::And(hn::Lt(hn::Sub(distance, reach), exit), hn::Lt(hn::Add(distance, reach), limit)));
+        const V sees_until = Map::view_volume ? exit : hn::Add(exit, reach);
+        active = hn::And(active, hn::And(hn::Lt(distance, sees_until), hn::Lt(hn::Add(distance, reach), limit)));
         if (hn::AllFalse(d, active)) break;
         counts.steps += static_cast<std::uint64_t>(hn::CountTrue(d, active));
         const auto level = hn::ConvertTo(di, whole), last = hn::Set(di, table.last);
@@ -256,77 +258,7 @@ ConeCounts march_all(const Map& map, const Pyramid& pyramid, const AirMap& air, 
 
 ConeCounts march_by_kind(const Pyramid& pyramid, const AirMap& air, const ConeSchedule& schedule, float cut_off,
                          ConeBatch& batch) {
-    const Domain& domain = pyramid.domain;
-    const auto march = [&](const auto& map) { return march_all(map, pyramid, air, schedule, cut_off, batch); };
-    if (domain.cascades > 1) return march(NestedLanes(domain));
-    switch (domain.warp.kind) {
-        case Warp::Kind::perspective:
-            return march(PerspectiveLanes(domain));
-        case Warp::Kind::spherical:
-            return march(SphericalLanes(domain));
-        case Warp::Kind::logistic:
-            return march(SeparableLanes<LogisticCurve>(domain));
-        default:
-            return march(SeparableLanes<CubicCurve>(domain));
-    }
-}
-
-/// set_warped_start for a vector of receivers in a grid whose axes the warp leaves where they are.
-template <class Map, class D, class V = hn::Vec<D>>
-HWY_INLINE void start_vector(D d, const Map& map, const Domain& domain, const Lanes3<V>& surface, const Lanes3<V>& normal,
-                             float normal_offset, bool see_own_surface, int i, ConeBatch& batch) {
-    const V one = hn::Set(d, 1.0f);
-    Lanes3<V> s;
-    const Lanes3<V> at = map.place(d, surface, s);
-    const Lanes3<V> steep{hn::Mul(normal.x, s.x), hn::Mul(normal.y, s.y), hn::Mul(normal.z, s.z)};
-    const Lanes3<V> flat{hn::Div(normal.x, s.x), hn::Div(normal.y, s.y), hn::Div(normal.z, s.z)};
-    const V offset = hn::Div(hn::Set(d, normal_offset), hn::Sqrt(dot(steep, steep))),
-            unit = hn::Div(one, hn::Sqrt(dot(flat, flat)));
-    const Lanes3<V> facing{hn::Mul(flat.x, unit), hn::Mul(flat.y, unit), hn::Mul(flat.z, unit)};
-    const Lanes3<V> size{hn::Abs(facing.x), hn::Abs(facing.y), hn::Abs(facing.z)};
-    const auto is_x = hn::And(hn::Ge(size.x, size.y), hn::Ge(size.x, size.z)), is_y = hn::Ge(size.y, size.z);
-    const auto longest = [&](V x, V y, V z) HWY_ATTR { return hn::IfThenElse(is_x, x, hn::IfThenElse(is_y, y, z)); };
-    const auto cells = [&](int axis)
-                           HWY_ATTR { return hn::Set(d, static_cast<float>(domain.cells[axis] << (domain.cascades - 1))); };
-    hn::Store(hn::MulAdd(normal.x, offset, surface.x), d, batch.x + i);
-    hn::Store(hn::MulAdd(normal.y, offset, surface.y), d, batch.y + i);
-    hn::Store(hn::MulAdd(normal.z, offset, surface.z), d, batch.z + i);
-    hn::Store(exp2_of(d, hn::Mul(log2_of(d, hn::Mul(hn::Mul(s.x, s.y), s.z)), hn::Set(d, -1.0f / 3.0f))), d, batch.scale + i);
-    hn::Store(facing.x, d, batch.nx + i);
-    hn::Store(facing.y, d, batch.ny + i);
-    hn::Store(facing.z, d, batch.nz + i);
-    hn::Store(hn::Neg(dot(facing, at)), d, batch.height + i);
-    hn::Store(see_own_surface ? hn::Zero(d) : hn::Add(hn::Add(size.x, size.y), size.z), d, batch.width + i);
-    hn::Store(longest(hn::Zero(d), one, hn::Add(one, one)), d, batch.axis + i);
-    hn::Store(longest(at.x, at.y, at.z), d, batch.axis_plane + i);
-    hn::Store(longest(cells(0), cells(1), cells(2)), d, batch.axis_cells + i);
-    const V most = longest(size.x, size.y, size.z);
-    hn::Store(hn::IfThenElseZero(hn::Gt(most, hn::Set(d, aligned_cosine)), one), d, batch.aligned + i);
-}
-
-template <class Map>
-void start_all(const Map& map, const Domain& domain, float normal_offset, bool see_own_surface, const Receivers& receivers,
-               ConeBatch& batch) {
-    const hn::ScalableTag<float> d;
-    using V = hn::Vec<decltype(d)>;
-    const V scale = hn::Set(d, 1.0f / domain.voxel_size);
-    for (int i = 0; i < receivers.count; i += static_cast<int>(hn::Lanes(d))) {
-        const auto linear = [&](int axis) HWY_ATTR {
-            return hn::Mul(hn::Sub(hn::Load(d, receivers.position[axis] + i), hn::Set(d, domain.lower[axis])), scale);
-        };
-        const Lanes3<V> normal{hn::Load(d, receivers.facing[0] + i), hn::Load(d, receivers.facing[1] + i),
-                               hn::Load(d, receivers.facing[2] + i)};
-        start_vector(d, map, domain, Lanes3<V>{linear(0), linear(1), linear(2)}, normal, normal_offset, see_own_surface, i,
-                     batch);
-    }
-}
-
-void start_by_kind(const Domain& domain, float normal_offset, bool see_own_surface, const Receivers& receivers,
-                   ConeBatch& batch) {
-    const auto start = [&](const auto& map) { start_all(map, domain, normal_offset, see_own_surface, receivers, batch); };
-    if (domain.cascades > 1) return start(NestedLanes(domain));
-    if (domain.warp.kind == Warp::Kind::logistic) return start(SeparableLanes<LogisticCurve>(domain));
-    start(SeparableLanes<CubicCurve>(domain));
+    return with_lanes(pyramid.domain, [&](const auto& map) { return march_all(map, pyramid, air, schedule, cut_off, batch); });
 }
 
 }  // namespace HWY_NAMESPACE
@@ -337,50 +269,10 @@ HWY_AFTER_NAMESPACE();
 namespace interreflect {
 
 HWY_EXPORT(march_by_kind);
-HWY_EXPORT(start_by_kind);
-
-void start_warped(const Domain& domain, float normal_offset, bool see_own_surface, const Receivers& receivers, ConeBatch& batch) {
-    batch.count = receivers.count;
-    if (!domain.warp.view_volume())
-        return HWY_DYNAMIC_DISPATCH(start_by_kind)(domain, normal_offset, see_own_surface, receivers, batch);
-    for (int i = 0; i < receivers.count; ++i) {
-        const vec3 position(receivers.position[0][i], receivers.position[1][i], receivers.position[2][i]);
-        const vec3 facing(receivers.facing[0][i], receivers.facing[1][i], receivers.facing[2][i]);
-        set_warped_start(batch, i, domain, domain.to_linear(position), facing, normal_offset, see_own_surface);
-    }
-}
 
 ConeCounts march_warped(const Pyramid& pyramid, const AirMap& air, const ConeSchedule& schedule, float cut_off,
                         ConeBatch& batch) {
     return HWY_DYNAMIC_DISPATCH(march_by_kind)(pyramid, air, schedule, cut_off, batch);
-}
-
-void set_warped_start(ConeBatch& batch, int i, const Domain& domain, const vec3& surface, const vec3& normal, float offset,
-                      bool see_own_surface) {
-    vec3 facing, on_surface = surface;
-    float stretch, volume;  // voxels along the normal, and voxels in a linear one
-    if (domain.warp.view_volume()) {
-        const mat3 density = domain.density(surface);
-        on_surface = domain.place(surface).voxels;
-        facing = glm::normalize(glm::transpose(glm::inverse(density)) * normal);
-        stretch = glm::length(density * normal), volume = std::fabs(glm::determinant(density));
-    } else {
-        // Nested grids are marched in linear voxels of the finest one, by a coarseness without jumps.
-        auto [voxels, slopes] = domain.warp.slopes_at(surface, domain.cells);
-        if (domain.cascades > 1)
-            slopes = vec3(std::exp2(-domain.grid_level(surface)));
-        else
-            on_surface = voxels;
-        slopes = glm::max(slopes, vec3(1e-3f));  // as in the march
-        facing = glm::normalize(normal / slopes);
-        stretch = glm::length(slopes * normal), volume = slopes.x * slopes.y * slopes.z;
-    }
-    const vec3 start = surface + normal * (offset / stretch);
-    batch.x[i] = start.x, batch.y[i] = start.y, batch.z[i] = start.z;
-    batch.scale[i] = 1.0f / std::cbrt(volume);
-    set_plane(batch, i, domain, on_surface, facing, see_own_surface);
-    // View volumes bend planes: only separable warps leave one along an axis where it is.
-    if (domain.warp.view_volume()) batch.aligned[i] = 0.0f;
 }
 
 }  // namespace interreflect

@@ -25,6 +25,11 @@ template <class V>
 HWY_INLINE V dot(const Lanes3<V>& a, const Lanes3<V>& b) {
     return hn::MulAdd(a.x, b.x, hn::MulAdd(a.y, b.y, hn::Mul(a.z, b.z)));
 }
+template <class V>
+HWY_INLINE Lanes3<V> cross(const Lanes3<V>& a, const Lanes3<V>& b) {
+    return {hn::MulSub(a.y, b.z, hn::Mul(a.z, b.y)), hn::MulSub(a.z, b.x, hn::Mul(a.x, b.z)),
+            hn::MulSub(a.x, b.y, hn::Mul(a.y, b.x))};
+}
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V dot(D d, const Lanes3<V>& a, const vec3& b) {
     return dot(a, Lanes3<V>{hn::Set(d, b.x), hn::Set(d, b.y), hn::Set(d, b.z)});
@@ -40,6 +45,22 @@ struct LanesAt {
     V least_level;     // finest level there is
     hn::Mask<D> inside;
 };
+
+/// Where cones start from.
+template <class V>
+struct SurfaceLanes {
+    Lanes3<V> voxels;  // place, as LanesAt has it
+    Lanes3<V> normal;  // of the surface as the warp bends it, of any length
+    V stretch;         // voxels along a linear voxel of the normal
+    V volume;          // voxels in a linear one
+};
+/// Where the warp leaves axes as they are; `slopes`: voxels along a linear one on each.
+template <class V>
+HWY_INLINE SurfaceLanes<V> surface_of(const Lanes3<V>& voxels, const Lanes3<V>& normal, const Lanes3<V>& slopes) {
+    const Lanes3<V> steep{hn::Mul(normal.x, slopes.x), hn::Mul(normal.y, slopes.y), hn::Mul(normal.z, slopes.z)};
+    const Lanes3<V> flat{hn::Div(normal.x, slopes.x), hn::Div(normal.y, slopes.y), hn::Div(normal.z, slopes.z)};
+    return {voxels, flat, hn::Sqrt(dot(steep, steep)), hn::Mul(hn::Mul(slopes.x, slopes.y), slopes.z)};
+}
 
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE Lanes3<V> along(D, const Lanes3<V>& start, const Lanes3<V>& direction, V distance) {
@@ -92,7 +113,7 @@ struct LogisticCurve {
 template <class Curve>
 class SeparableLanes {
   public:
-    static constexpr bool nested = false;
+    static constexpr bool nested = false, view_volume = false;
     explicit SeparableLanes(const Domain& domain) : size_(domain.cells), steepness_(domain.warp.steepness) {
         centre_ = domain.warp.centre;
         for (int axis = 0; axis < 3; ++axis) {
@@ -117,13 +138,19 @@ class SeparableLanes {
         return at;
     }
 
+    template <class D, class V = hn::Vec<D>>
+    HWY_INLINE SurfaceLanes<V> surface(D d, const Lanes3<V>& p, const Lanes3<V>& normal) const {
+        Lanes3<V> slopes;
+        const Lanes3<V> voxels = place(d, p, slopes);
+        return surface_of(voxels, normal, slopes);
+    }
+
+  private:
     /// Voxels at p, and how many lie along a linear one on each axis.
     template <class D, class V = hn::Vec<D>>
     HWY_INLINE Lanes3<V> place(D d, const Lanes3<V>& p, Lanes3<V>& slopes) const {
         return {curve(d, 0, p.x, slopes.x), curve(d, 1, p.y, slopes.y), curve(d, 2, p.z, slopes.z)};
     }
-
-  private:
     template <class D, class V = hn::Vec<D>>
     HWY_INLINE V curve(D d, int axis, V p, V& slope) const {
         const V centre = hn::Set(d, centre_[axis]);
@@ -140,101 +167,10 @@ class SeparableLanes {
     float steepness_;
 };
 
-/// What both view volumes do: space outside of them is unknown, and lets everything through.
-class ViewLanes {
-  public:
-    static constexpr bool nested = false;
-    explicit ViewLanes(const Domain& domain) : warp_(domain.warp), size_(domain.cells), end_(2.0f * domain.view_radius()) {}
-    template <class D, class V = hn::Vec<D>>
-    HWY_INLINE V exit(D d, const Lanes3<V>&, const Lanes3<V>&) const {
-        return hn::Set(d, end_);
-    }
-
-  protected:
-    template <class D, class V = hn::Vec<D>>
-    HWY_INLINE Lanes3<V> in_view(D d, const Lanes3<V>& v) const {
-        return {dot(d, v, warp_.right), dot(d, v, warp_.up), dot(d, v, warp_.forward)};
-    }
-    template <class D, class V = hn::Vec<D>>
-    HWY_INLINE void finish(D d, V volume, LanesAt<D>& at) const {
-        at.density = hn::Max(density_across(d, volume, at.stretch), hn::Set(d, 1e-20f));
-        at.least_level = hn::Zero(d);
-        const auto between = [&](V q, float size)
-                                 HWY_ATTR { return hn::And(hn::Ge(q, hn::Zero(d)), hn::Le(q, hn::Set(d, size))); };
-        at.inside = hn::And(at.inside, hn::And(between(at.voxels.x, size_.x),
-                                               hn::And(between(at.voxels.y, size_.y), between(at.voxels.z, size_.z))));
-        at.voxels = {within(d, at.voxels.x, size_.x), within(d, at.voxels.y, size_.y), within(d, at.voxels.z, size_.z)};
-    }
-
-    Warp warp_;
-    vec3 size_;
-    float end_;
-};
-
-class PerspectiveLanes : public ViewLanes {
-  public:
-    using ViewLanes::ViewLanes;
-    template <class D, class V = hn::Vec<D>>
-    HWY_INLINE LanesAt<D> at(D d, const Lanes3<V>& start, const Lanes3<V>& direction, V distance) const {
-        const Lanes3<V> v = in_view(d, along(d, start, direction, distance)), w = in_view(d, direction);
-        const V near = hn::Set(d, warp_.near), one = hn::Set(d, 1.0f), half = hn::Set(d, 0.5f);
-        LanesAt<D> at;
-        at.inside = hn::Ge(v.z, near);
-        const V inverse = hn::Div(one, hn::Max(v.z, near)), x = hn::Mul(v.x, inverse), y = hn::Mul(v.y, inverse);
-        const V kx = hn::Set(d, 0.5f * size_.x / warp_.half_x), ky = hn::Set(d, 0.5f * size_.y / warp_.half_y);
-        const V sx = hn::Mul(kx, inverse), sy = hn::Mul(ky, inverse);
-        V depth, sz;
-        if (warp_.linear_depth) {
-            sz = hn::Set(d, size_.z / (warp_.far - warp_.near));
-            depth = hn::Mul(hn::Sub(v.z, near), sz);
-        } else {
-            const V k = hn::Set(d, size_.z / (1.0f - warp_.near / warp_.far));
-            depth = hn::Mul(k, hn::NegMulAdd(near, inverse, one));
-            sz = hn::Mul(hn::Mul(k, near), hn::Mul(inverse, inverse));
-        }
-        at.voxels = {hn::MulAdd(kx, x, hn::Mul(half, hn::Set(d, size_.x))), hn::MulAdd(ky, y, hn::Mul(half, hn::Set(d, size_.y))),
-                     depth};
-        set_way(d, Lanes3<V>{hn::Mul(sx, hn::NegMulAdd(x, w.z, w.x)), hn::Mul(sy, hn::NegMulAdd(y, w.z, w.y)), hn::Mul(sz, w.z)},
-                at);
-        finish(d, hn::Mul(hn::Mul(sx, sy), sz), at);
-        return at;
-    }
-};
-
-class SphericalLanes : public ViewLanes {
-  public:
-    using ViewLanes::ViewLanes;
-    template <class D, class V = hn::Vec<D>>
-    HWY_INLINE LanesAt<D> at(D d, const Lanes3<V>& start, const Lanes3<V>& direction, V distance) const {
-        const Lanes3<V> v = in_view(d, along(d, start, direction, distance)), w = in_view(d, direction);
-        const V one = hn::Set(d, 1.0f), tiny = hn::Set(d, 1e-12f);
-        const V across2 = hn::Max(hn::MulAdd(v.x, v.x, hn::Mul(v.z, v.z)), tiny), across = hn::Sqrt(across2);
-        const V radius2 = hn::MulAdd(v.y, v.y, across2);
-        const V kx = hn::Set(d, 0.5f * size_.x / warp_.half_x), ky = hn::Set(d, 0.5f * size_.y / warp_.half_y);
-        const float octaves = std::log2(warp_.far / warp_.near);
-        const V kz = hn::Set(d, size_.z / octaves), natural = hn::Set(d, size_.z / (octaves * std::log(2.0f)));
-        LanesAt<D> at;
-        at.inside = hn::Gt(v.z, hn::Zero(d));  // angles lie within 85 degrees of the volume's middle
-        const V azimuth = hn::Atan(d, hn::Div(v.x, hn::Max(v.z, tiny)));
-        const V elevation = hn::Sub(hn::Atan(d, hn::Div(v.y, across)), hn::Set(d, warp_.elevation));
-        const V level = hn::Sub(hn::Mul(hn::Set(d, 0.5f), log2_of(d, radius2)), hn::Set(d, std::log2(warp_.near)));
-        at.voxels = {hn::MulAdd(kx, azimuth, hn::Set(d, 0.5f * size_.x)), hn::MulAdd(ky, elevation, hn::Set(d, 0.5f * size_.y)),
-                     hn::Mul(kz, level)};
-        const V inverse2 = hn::Div(one, radius2), outwards = hn::MulAdd(v.x, w.x, hn::Mul(v.z, w.z));
-        const V turn = hn::Div(hn::Sub(hn::Mul(v.z, w.x), hn::Mul(v.x, w.z)), across2);
-        const V rise = hn::Mul(hn::Sub(hn::Mul(across, w.y), hn::Div(hn::Mul(v.y, outwards), across)), inverse2);
-        const V away = hn::Mul(hn::MulAdd(v.y, w.y, outwards), inverse2);
-        set_way(d, Lanes3<V>{hn::Mul(kx, turn), hn::Mul(ky, rise), hn::Mul(natural, away)}, at);
-        // The three gradients are perpendicular: 1 / across, 1 / radius, 1 / radius.
-        finish(d, hn::Div(hn::Mul(hn::Mul(kx, ky), natural), hn::Mul(across, radius2)), at);
-        return at;
-    }
-};
-
 /// Nested grids: the voxels stay linear, but the finest level depends on the place.
 class NestedLanes {
   public:
-    static constexpr bool nested = true;
+    static constexpr bool nested = true, view_volume = false;
     explicit NestedLanes(const Domain& domain)
         : size_(vec3(domain.cells) * static_cast<float>(1 << (domain.cascades - 1))), count_(domain.cascades - 1) {
         for (int k = 0; k < count_; ++k) {
@@ -259,9 +195,9 @@ class NestedLanes {
         return at;
     }
     template <class D, class V = hn::Vec<D>>
-    HWY_INLINE Lanes3<V> place(D d, const Lanes3<V>& p, Lanes3<V>& slopes) const {
-        slopes.x = slopes.y = slopes.z = exp2_of(d, hn::Neg(grid_level(d, p)));
-        return p;
+    HWY_INLINE SurfaceLanes<V> surface(D d, const Lanes3<V>& p, const Lanes3<V>& normal) const {
+        const V slope = exp2_of(d, hn::Neg(grid_level(d, p)));
+        return surface_of(p, normal, Lanes3<V>{slope, slope, slope});
     }
 
   private:
