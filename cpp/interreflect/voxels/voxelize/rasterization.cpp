@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <span>
 #include <stdexcept>
 
@@ -24,11 +25,12 @@ struct Spans {
 
 /// Where the samples of a pixel lie, four side by side.
 struct Samples {
-    std::array<float, most_samples> u{}, v{};
+    std::array<float, most_samples> u{}, v{}, once{};  // place in the pixel; 1, or 0 for those that repeat the first ones
     std::size_t count, lanes;
 
     explicit Samples(std::span<const vec2> samples) : count(samples.size()), lanes((samples.size() + 3) / 4 * 4) {
-        for (std::size_t s = 0; s < most_samples; ++s) u[s] = samples[s % count].x, v[s] = samples[s % count].y;
+        for (std::size_t s = 0; s < most_samples; ++s)
+            u[s] = samples[s % count].x, v[s] = samples[s % count].y, once[s] = s < count ? 1.0f : 0.0f;
     }
     vec2 at(std::size_t s) const { return {u[s], v[s]}; }
 };
@@ -81,29 +83,37 @@ class Fragments {
 
     /// `covered`: the pixels of the row of each sample.
     void row(int v, const Spans& covered) {
-        int first = covered.first[0], end = covered.end[0];
-        for (std::size_t s = 1; s < samples_.count; ++s) {
-            if (covered.first[s] >= covered.end[s]) continue;
-            const bool none = first >= end;
-            first = none ? covered.first[s] : std::min(first, covered.first[s]);
-            end = none ? covered.end[s] : std::max(end, covered.end[s]);
+        int first = std::numeric_limits<int>::max(), end = std::numeric_limits<int>::min();
+        for (std::size_t s = 0; s < samples_.count; ++s) {
+            const bool some = covered.first[s] < covered.end[s];
+            first = std::min(first, some ? covered.first[s] : first);
+            end = std::max(end, some ? covered.end[s] : end);
         }
         for (int u = first; u < end; ++u) pixel(u, v, covered);
     }
 
   private:
     void pixel(int u, int v, const Spans& covered) {
-        vec2 sum{0};
-        int count = 0;
-        for (std::size_t s = 0; s < samples_.count; ++s) {
-            if (u < covered.first[s] || u >= covered.end[s]) continue;
-            if (triangle_.mask != nullptr) add(vec2(u, v) + samples_.at(s), share_);  // masked texels are taken away one by one
-            sum += samples_.at(s);
-            ++count;
-        }
-        if (count == 0 || triangle_.mask != nullptr) return;
-        const auto n = static_cast<float>(count);
-        add(vec2(u, v) + sum / n, share_ * n);
+        if (triangle_.mask != nullptr) return masked_pixel(u, v, covered);
+        // Sums of sixteenths: the same in any order.
+        std::array<float, 4> sum_u{}, sum_v{}, count{};
+        for (std::size_t begin = 0; begin < samples_.lanes; begin += 4)
+            for (std::size_t i = 0; i < 4; ++i) {
+                const std::size_t s = begin + i;
+                const float in = ((u >= covered.first[s]) & (u < covered.end[s])) ? samples_.once[s] : 0.0f;
+                sum_u[i] += in * samples_.u[s];
+                sum_v[i] += in * samples_.v[s];
+                count[i] += in;
+            }
+        const auto all = [](const std::array<float, 4>& of) { return (of[0] + of[1]) + (of[2] + of[3]); };
+        const float n = all(count);
+        if (n == 0.0f) return;
+        add(vec2(u, v) + vec2(all(sum_u), all(sum_v)) / n, share_ * n);
+    }
+    /// Masked texels are taken away one by one.
+    void masked_pixel(int u, int v, const Spans& covered) {
+        for (std::size_t s = 0; s < samples_.count; ++s)
+            if (u >= covered.first[s] && u < covered.end[s]) add(vec2(u, v) + samples_.at(s), share_);
     }
     void add(const vec2& at, float area) {
         const float depth = std::clamp(projected_.depth(at.x, at.y), projected_.lower.z, projected_.upper.z);

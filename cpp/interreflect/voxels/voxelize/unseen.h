@@ -7,7 +7,8 @@
 
 namespace interreflect {
 
-/// The triangles whose box, seen along their dominant axis, holds no sample of any pixel: most of them where voxels are large.
+/// The triangles that, seen along their dominant axis, hold no sample of any pixel: most of them where voxels are large. What is
+/// too close to tell, or wider than a pixel, may be seen.
 /// Pixels are `oversampling` to a voxel; at most eight samples.
 class Unseen {
   public:
