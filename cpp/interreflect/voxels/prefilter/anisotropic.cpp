@@ -54,8 +54,9 @@ void write_slices_faces(const LevelView& level, const VoxelView& voxels, int z) 
         LevelView volume = level;
         volume.texels += static_cast<std::size_t>(face) * level.volume;
         write_slices(volume, none, z, false);
-        for (std::size_t i = voxels.begin; i < voxels.end; ++i)
-            write_voxel(volume, texel_of(level, voxels, i), sided(voxels, i, face));
+        over_voxels(level, voxels, [&](std::size_t i, const Texel& texel, bool inner) HWY_ATTR {
+            write_voxel(volume, texel, inner, sided(voxels, i, face));
+        });
     }
 }
 

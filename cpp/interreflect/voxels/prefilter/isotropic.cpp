@@ -144,10 +144,9 @@ void write_slices_harmonics(const LevelView& level, const VoxelView& voxels, int
         volumes[v].texels += v * level.volume;
         write_slices(volumes[v], none, z, false);
     }
-    for (std::size_t i = voxels.begin; i < voxels.end; ++i) {
-        const Texel texel = texel_of(level, voxels, i);
-        write_harmonics(voxels, i, [&](std::size_t v, V value) HWY_ATTR { write_voxel(volumes[v], texel, value); });
-    }
+    over_voxels(level, voxels, [&](std::size_t i, const Texel& texel, bool inner) HWY_ATTR {
+        write_harmonics(voxels, i, [&](std::size_t v, V value) HWY_ATTR { write_voxel(volumes[v], texel, inner, value); });
+    });
 }
 
 }  // namespace
@@ -207,8 +206,10 @@ Pyramid build_harmonics(bool columns, const LevelKnobs& knobs, const LitVoxels& 
         [](const LevelView& level, const VoxelView& voxels, int z) {
             HWY_DYNAMIC_DISPATCH(write_slices_harmonics)(level, voxels, z);
         },
-        [](std::uint16_t* texels, const VoxelView& voxels) { HWY_DYNAMIC_DISPATCH(write_packed_harmonics)
-                                                             (texels, voxels); });
+        [](std::uint16_t* texels, const VoxelView& voxels) {
+            HWY_DYNAMIC_DISPATCH(write_packed_harmonics)
+            (texels, voxels);
+        });
     return pyramid;
 }
 

@@ -107,8 +107,8 @@ HWY_INLINE V composite(const V* texel, int face) {
 
 HWY_INLINE V premultiplied(const float* radiance, float opacity, float inverse_scale) {
     const D d;
-    HWY_ALIGN float rgba[4] = {radiance[0] * inverse_scale, radiance[1] * inverse_scale, radiance[2] * inverse_scale, 1.0f};
-    return hn::Mul(hn::Load(d, rgba), hn::Set(d, opacity));
+    const V rgb = hn::Mul(hn::MaskedLoad(hn::FirstN(d, 3), d, radiance), hn::Set(d, inverse_scale));
+    return hn::Mul(hn::InsertLane(rgb, 3, 1.0f), hn::Set(d, opacity));
 }
 
 /// What a channel of eight bits would hold: a multiple of 1/255 in [0, 1].
@@ -122,17 +122,30 @@ HWY_INLINE V eight_bits(V value) {
 struct Texel {
     int x, y, z;
 };
-HWY_INLINE Texel texel_of(const LevelView& level, const VoxelView& voxels, std::size_t i) {
-    const auto cell = static_cast<int>(voxels.cell[i] - voxels.base);
-    const int line = cell / level.nx;
-    return {cell % level.nx, line % level.ny, line / level.ny};
+/// Calls visit(i, its texel, whether that has no copies in the border) for every voxel.
+template <class Visit>
+HWY_INLINE void over_voxels(const LevelView& level, const VoxelView& voxels, const Visit& visit) {
+    const auto width = static_cast<std::uint32_t>(level.nx), height = static_cast<std::uint32_t>(level.ny);
+    std::uint32_t first = 0, end = 0;  // cells of the row of the voxel before
+    Texel at{};
+    bool inner_row = false;
+    for (std::size_t i = voxels.begin; i < voxels.end; ++i) {
+        const std::uint32_t cell = voxels.cell[i] - voxels.base;
+        if (cell >= end) {
+            const std::uint32_t line = cell / width;
+            first = line * width, end = first + width;
+            at.y = static_cast<int>(line % height), at.z = static_cast<int>(line / height);
+            inner_row = at.y > 0 && at.z > 0 && at.y + 1 < level.ny && at.z + 1 < level.nz;
+        }
+        at.x = static_cast<int>(cell - first);
+        visit(i, at, inner_row && at.x > 0 && at.x + 1 < level.nx);
+    }
 }
 
 /// A voxel, and its copies in the border.
-HWY_INLINE void write_voxel(const LevelView& level, const Texel& texel, V value) {
+HWY_INLINE void write_voxel(const LevelView& level, const Texel& texel, bool inner, V value) {
     const auto [x, y, z] = texel;
     store(value, level.texels + at(level, x, y, z));
-    const bool inner = x > 0 && y > 0 && z > 0 && x + 1 < level.nx && y + 1 < level.ny && z + 1 < level.nz;
     if (inner) return;
     for (int bz = (z == 0 ? -1 : z); bz <= (z + 1 == level.nz ? z + 1 : z); ++bz)
         for (int by = (y == 0 ? -1 : y); by <= (y + 1 == level.ny ? y + 1 : y); ++by)
@@ -152,8 +165,9 @@ inline void write_slices(const LevelView& level, const VoxelView& voxels, int z,
     const int first = z == 0 ? -1 : 2 * z, last = 2 * z + 2 >= level.nz ? level.nz : 2 * z + 1;
     __builtin_memset(level.texels + static_cast<std::size_t>(first + 1) * level.slice, 0,
                      static_cast<std::size_t>(last - first + 1) * level.slice * sizeof(std::uint16_t));
-    for (std::size_t i = voxels.begin; i < voxels.end; ++i)
-        write_voxel(level, texel_of(level, voxels, i), voxel_texel(voxels, i, bytes));
+    over_voxels(level, voxels, [&](std::size_t i, const Texel& texel, bool inner) HWY_ATTR {
+        write_voxel(level, texel, inner, voxel_texel(voxels, i, bytes));
+    });
 }
 
 /// The same voxels one after the other; `texels`: of voxel 0.

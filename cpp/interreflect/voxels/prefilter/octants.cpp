@@ -192,13 +192,10 @@ void write_slices_octants(const LevelView& level, const VoxelView& voxels, int z
         cleared.texels += octant * level.volume;
         write_slices(cleared, none, z, false);
     }
-    for (std::size_t i = voxels.begin; i < voxels.end; ++i) {
-        const Texel texel = texel_of(level, voxels, i);
-        const auto [x, y, vz] = texel;
-        write_sides(voxels, i, level.texels + at(level, x, y, vz), level.volume);
-        const bool inner = x > 0 && y > 0 && vz > 0 && x + 1 < level.nx && y + 1 < level.ny && vz + 1 < level.nz;
+    over_voxels(level, voxels, [&](std::size_t i, const Texel& texel, bool inner) HWY_ATTR {
+        write_sides(voxels, i, level.texels + at(level, texel.x, texel.y, texel.z), level.volume);
         if (!inner) repeat_outwards(level, texel);
-    }
+    });
 }
 
 /// The eight octants of one voxel after the other; `texels`: of voxel 0.
