@@ -13,95 +13,129 @@ namespace interreflect {
 namespace {
 
 constexpr std::size_t page = std::size_t{4} << 10, huge_page = std::size_t{2} << 20;
+constexpr std::size_t pooled = std::size_t{64} << 10;  // smaller buffers are left to the allocator, which keeps them too
 constexpr std::size_t round_up(std::size_t bytes, std::size_t unit) { return (bytes + unit - 1) / unit * unit; }
 
-/// Fresh pages that begin where a huge page does.
-void* map_pages(std::size_t bytes) {
-    void* found = mmap(nullptr, bytes + huge_page, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-    if (found == MAP_FAILED) return nullptr;
-    const auto first = reinterpret_cast<std::uintptr_t>(found), begin = round_up(first, huge_page);
-    if (begin != first) munmap(found, begin - first);
-    if (const std::size_t behind = first + huge_page - begin; behind != 0) munmap(reinterpret_cast<void*>(begin + bytes), behind);
-    madvise(reinterpret_cast<void*>(begin), bytes, MADV_HUGEPAGE);
-    return reinterpret_cast<void*>(begin);
+/// Address space that begins where a huge page does, without memory yet: as much as asked for or, where the system refuses that,
+/// less, but at least `least` bytes. Null where that is too much.
+void* reserve(std::size_t& bytes, std::size_t least) {
+    for (; bytes >= least; bytes /= 2) {
+        void* found =
+            mmap(nullptr, bytes + huge_page, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+        if (found == MAP_FAILED) continue;
+        const auto first = reinterpret_cast<std::uintptr_t>(found), begin = round_up(first, huge_page);
+        madvise(reinterpret_cast<void*>(begin), bytes, MADV_HUGEPAGE);
+        return reinterpret_cast<void*>(begin);
+    }
+    return nullptr;
 }
 
-/// Pages that were freed, for the next large buffers: a frame needs as many as the one before, and the kernel's zeroing of fresh
-/// pages costs as much as tracing a G-buffer's rays. What is kept and what is in use are together never more than was in use at
-/// some time before, so keeping them makes no process larger than it has been.
+/// Large buffers lie in one stretch of addresses. The pages of those that were freed are kept for the next ones: a frame needs as
+/// many as the one before, and the kernel's zeroing of fresh pages costs as much as tracing a G-buffer's rays. What is kept and
+/// what is in use are together never more than was in use at some time before, so keeping makes no process larger than it has
+/// been.
 class Pool {
   public:
     void* take(std::size_t bytes) {
         const std::lock_guard lock(mutex_);
-        if (void* memory = take_kept(bytes)) return use(memory, bytes);
-        const std::size_t most = std::max(most_used_, used_ + bytes);
-        keep_at_most(most - used_ - bytes);
-        void* memory = map_pages(bytes);
-        if (memory == nullptr) throw std::bad_alloc();
-        return use(memory, bytes);
+        auto first = find(bytes);
+        if (first == free_.end()) {
+            std::size_t more = most_reserved;
+            void* memory = reserve(more, bytes);
+            if (memory == nullptr) throw std::bad_alloc();
+            free_[reinterpret_cast<std::uintptr_t>(memory)] = {more, false};
+            first = find(bytes);
+        }
+        const std::uintptr_t begin = first->first;
+        carve(first, bytes);
+        used_ += bytes;
+        most_used_ = std::max(most_used_, used_);
+        keep_at_most(most_used_ + slack - used_);
+        return reinterpret_cast<void*>(begin);
     }
     void give(void* memory, std::size_t bytes) noexcept {
         const std::lock_guard lock(mutex_);
         used_ -= bytes;
-        try {
-            keep(reinterpret_cast<std::uintptr_t>(memory), bytes);
-        } catch (const std::bad_alloc&) {
-            munmap(memory, bytes);
-        }
-        keep_at_most(most_idle);
+        kept_ += bytes;
+        put(reinterpret_cast<std::uintptr_t>(memory), {bytes, true});
+        keep_at_most(std::min(most_idle, most_used_ + slack - used_));
     }
 
   private:
     // A frame of voxel cone tracing at 1280 x 720 frees some 300 MiB.
-    static constexpr std::size_t most_idle = std::size_t{384} << 20;
+    static constexpr std::size_t most_idle = std::size_t{384} << 20, most_reserved = std::size_t{256} << 30,
+                                 slack = std::size_t{16} << 20;
+    struct Piece {
+        std::size_t bytes;
+        bool kept;  // has pages
+    };
+    using Pieces = std::map<std::uintptr_t, Piece>;
 
-    void* use(void* memory, std::size_t bytes) {
-        used_ += bytes;
-        most_used_ = std::max(most_used_, used_);
-        return memory;
-    }
-    /// Of the smallest piece that holds so much, its beginning; null where there is none.
-    void* take_kept(std::size_t bytes) {
-        auto best = kept_.end();
-        for (auto i = kept_.begin(); i != kept_.end(); ++i)
-            if (i->second >= bytes && (best == kept_.end() || i->second < best->second)) best = i;
-        if (best == kept_.end()) return nullptr;
-        const auto [begin, size] = *best;
-        if (size > bytes) kept_.emplace(begin + bytes, size - bytes);
-        kept_.erase(best);
-        held_ -= bytes;
-        return reinterpret_cast<void*>(begin);
-    }
-    /// One piece with those next to it.
-    void keep(std::uintptr_t begin, std::size_t bytes) {
-        auto here = kept_.emplace(begin, bytes).first;
-        held_ += bytes;
-        if (const auto next = std::next(here); next != kept_.end() && begin + bytes == next->first) {
-            here->second += next->second;
-            kept_.erase(next);
+    /// The free piece from which on so many bytes are free, most of them kept; of several the smallest. The end where there is
+    /// none.
+    Pieces::iterator find(std::size_t bytes) {
+        auto best = free_.end();
+        std::size_t least = 0;
+        for (auto begin = free_.begin(); begin != free_.end(); ++begin) {
+            std::size_t left = bytes, fresh = 0;
+            std::uintptr_t at = begin->first;
+            for (auto i = begin; left != 0 && i != free_.end() && i->first == at; at += i->second.bytes, ++i) {
+                const std::size_t part = std::min(left, i->second.bytes);
+                left -= part;
+                fresh += i->second.kept ? 0 : part;
+            }
+            const bool worse =
+                best != free_.end() && (fresh > least || (fresh == least && begin->second.bytes >= best->second.bytes));
+            if (left != 0 || worse) continue;
+            best = begin;
+            least = fresh;
         }
-        if (here == kept_.begin()) return;
-        const auto before = std::prev(here);
-        if (before->first + before->second != begin) return;
-        before->second += here->second;
-        kept_.erase(here);
+        return best;
     }
-    /// Returns the ends of the largest pieces to the system.
-    void keep_at_most(std::size_t bytes) noexcept {
-        while (held_ > bytes) {
-            const auto largest =
-                std::max_element(kept_.begin(), kept_.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
-            const std::size_t gone = std::min(largest->second, held_ - bytes);
-            munmap(reinterpret_cast<void*>(largest->first + largest->second - gone), gone);
-            held_ -= gone;
-            largest->second -= gone;
-            if (largest->second == 0) kept_.erase(largest);
+    /// Takes so many bytes out of the free pieces from `first` on.
+    void carve(Pieces::iterator first, std::size_t bytes) {
+        while (bytes != 0) {
+            const auto [begin, piece] = *first;
+            const std::size_t part = std::min(bytes, piece.bytes);
+            if (part < piece.bytes) free_.emplace(begin + part, Piece{piece.bytes - part, piece.kept});
+            first = free_.erase(first);
+            bytes -= part;
+            kept_ -= piece.kept ? part : 0;
+        }
+    }
+    /// Adds a free piece, one with its neighbours of the same kind.
+    void put(std::uintptr_t begin, Piece piece) {
+        auto next = free_.lower_bound(begin);
+        if (next != free_.end() && next->first == begin + piece.bytes && next->second.kept == piece.kept) {
+            piece.bytes += next->second.bytes;
+            next = free_.erase(next);
+        }
+        if (next != free_.begin()) {
+            const auto before = std::prev(next);
+            if (before->first + before->second.bytes == begin && before->second.kept == piece.kept) {
+                before->second.bytes += piece.bytes;
+                return;
+            }
+        }
+        free_.emplace_hint(next, begin, piece);
+    }
+    /// Returns the pages of the last pieces to the system.
+    void keep_at_most(std::size_t bytes) {
+        while (kept_ > bytes) {
+            const auto last = std::find_if(free_.rbegin(), free_.rend(), [](const auto& piece) { return piece.second.kept; });
+            const std::size_t gone = std::min(last->second.bytes, kept_ - bytes);
+            const std::uintptr_t begin = last->first + last->second.bytes - gone;
+            madvise(reinterpret_cast<void*>(begin), gone, MADV_DONTNEED);
+            kept_ -= gone;
+            last->second.bytes -= gone;
+            if (last->second.bytes == 0) free_.erase(last->first);
+            put(begin, {gone, false});
         }
     }
 
     std::mutex mutex_;
-    std::map<std::uintptr_t, std::size_t> kept_;  // bytes of each piece, no two of which touch
-    std::size_t held_ = 0, used_ = 0, most_used_ = 0;
+    Pieces free_;  // by address; adjacent ones differ in kind
+    std::size_t kept_ = 0, used_ = 0, most_used_ = 0;
 };
 
 /// Never destroyed: buffers may outlive every static object.
@@ -113,14 +147,14 @@ Pool& pool() {
 }  // namespace
 
 void* allocate_buffer(std::size_t bytes) {
-    if (bytes >= huge_page) return pool().take(round_up(bytes, page));
+    if (bytes >= pooled) return pool().take(round_up(bytes, page));
     void* memory = std::aligned_alloc(64, round_up(bytes, 64));
     if (memory == nullptr) throw std::bad_alloc();
     return memory;
 }
 
 void free_buffer(void* memory, std::size_t bytes) noexcept {
-    if (bytes >= huge_page)
+    if (bytes >= pooled)
         pool().give(memory, round_up(bytes, page));
     else
         std::free(memory);

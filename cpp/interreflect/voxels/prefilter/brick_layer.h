@@ -2,7 +2,6 @@
 #pragma once
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "data/voxel_grid.h"
 #include "voxels/prefilter/levels.h"
@@ -35,8 +34,8 @@ class BrickLayer {
     std::span<const std::uint32_t> cells_;
     int volumes_, layer_ = 0;
     std::size_t row_, slice_, texel_row_, texel_slice_;  // strides, of numbers and of texels in halves
-    std::vector<std::uint32_t> number_;
-    std::vector<std::uint16_t> texels_;  // volume by volume
+    Buffer<std::uint32_t> number_;
+    Buffer<std::uint16_t> texels_;  // volume by volume
 };
 
 }  // namespace interreflect

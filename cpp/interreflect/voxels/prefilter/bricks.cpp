@@ -64,7 +64,7 @@ class CoarseSlice {
     }
 
     const Pyramid::Level& level_;
-    std::vector<std::uint16_t> halves_;
+    Buffer<std::uint16_t> halves_;
 };
 
 /// Room for so many texels after the one of air.
