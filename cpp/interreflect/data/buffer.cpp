@@ -64,7 +64,7 @@ class Pool {
   private:
     // A frame of voxel cone tracing at 1280 x 720 frees some 300 MiB.
     static constexpr std::size_t most_idle = std::size_t{384} << 20, most_reserved = std::size_t{256} << 30,
-                                 slack = std::size_t{16} << 20;
+                                 slack = std::size_t{4} << 20;
     struct Piece {
         std::size_t bytes;
         bool kept;  // has pages
