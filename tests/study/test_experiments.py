@@ -59,7 +59,7 @@ def test_what_is_no_study_measures_by_itself():
 def broken(tmp_path_factory):
     """Break points of coarse voxels in two grids and with a filter that thins walls, at three failures that take no truth."""
     folder = tmp_path_factory.mktemp("break")
-    rows = ("leak through a thin wall", "occlusion by a wall", "opaque layer between empty ones")
+    rows = ("leak through a thin wall", "occlusion by a wall", "opaque layer, opacity by the step's length")
     small = {"grids": {name: where.grids[name] for name in ("even", "Spherical")}, "filters": {"mean": where.filters["VolumeCoverage"]}}
     methods = {atlas: {name: m.replace({"grid.resolution": 16}) for name, m in ways.items()} for atlas, ways in small.items()}
     return folder, where.measure(folder, rows, methods, seeds=(0,), sweep=2, bisections=1)
@@ -72,7 +72,7 @@ def test_break_points_of_voxels_are_written_drawn_and_told(broken):
     assert len(kept) == 3 * 3 and set(kept["outcome"]) <= {"breaks", "never", "always", "reversed"}
     assert (folder / "grids.html").exists() and (folder / "filters.html").exists()
     told = where.table(found["filters"])
-    assert told.loc["opaque layer between empty ones", "mean"] == "always"  # corrected for the step, it never closes
+    assert told.loc["opaque layer, opacity by the step's length", "mean"] == "always"  # it never closes
     figure = where.chart(found)
     figure.canvas.draw()
     texts = [text.get_text() for axes in figure.axes for text in axes.texts]

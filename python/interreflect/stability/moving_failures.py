@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from interreflect import scenes
 from interreflect.motion import Motion
+from interreflect.scenes.camera import Camera
 from interreflect.scenes.scene import Scene
 from interreflect.stability.failure import Failure
 from interreflect.stability.measures import moving, transformed
@@ -23,6 +24,12 @@ ROUNDS = "rounding puts surfaces on the border of two voxels into either, and le
 
 def _room(_: float) -> Scene:
     return scenes.cornell_box("point")
+
+
+def _room_from_inside(_: float) -> Scene:
+    """Seen from within, where grids about the camera have voxels."""
+    inside = Camera(position=(-0.2, 1.1, 0.85), target=(0.1, 0.8, -1.0), fov_x=80)
+    return _room(0).replace(cameras={"inside": inside})
 
 
 def _corner(_: float) -> Scene:
@@ -53,7 +60,7 @@ MOVING = (
         unit="voxels of a grid of 64 a frame",
         easy=1 / 16,
         hard=4.0,
-        scene=_room,
+        scene=_room_from_inside,
         measure=moving.temporal(lambda step: Motion.dolly(by=(step, 0.3 * step, 0), voxels=64, frames=FRAMES), "p95"),
         quantity="95th percentile of the temporal error at surface points, share of mean radiance",
         truth=REFERENCE,
@@ -68,7 +75,7 @@ MOVING = (
         unit="degrees a frame",
         easy=0.05,
         hard=4.0,
-        scene=_room,
+        scene=_room_from_inside,
         measure=moving.temporal(lambda step: Motion.rotation(by=step, frames=FRAMES), "p95"),
         quantity="95th percentile of the temporal error at surface points, share of mean radiance",
         truth=REFERENCE,

@@ -75,6 +75,24 @@ def _hidden_sky(blocker: str, name: str) -> Failure:
     )
 
 
+def _layer(name: str, corrected: bool) -> Failure:
+    return Failure(
+        name=name,
+        knob="step of a ray through the voxels",
+        unit="diameters",
+        easy=0.125,
+        hard=1.5,
+        scene=lambda _: scenes.opaque_layer(),
+        measure=lambda trial: voxels.open_layer(trial, corrected),
+        quantity="largest share of the sun that comes through",
+        truth=ZERO,
+        tolerance=0.05,
+        reason="a twentieth of the light; steps of half a diameter leave at most .035 of it, whole ones .25, by closed form",
+        stages=("march",),
+        camera="beside",
+    )
+
+
 VOXELS = (
     _wall("leak through a thin wall"),
     _wall("leak through a shifted wall", offset=VOXEL / 4),
@@ -116,19 +134,6 @@ VOXELS = (
         stages=("light_voxels",),
         size=(48, 36),
     ),
-    Failure(
-        name="opaque layer between empty ones",
-        knob="step of a ray through the voxels",
-        unit="diameters",
-        easy=0.125,
-        hard=1.5,
-        scene=lambda _: scenes.opaque_layer(),
-        measure=voxels.open_layer,
-        quantity="largest share of the sun that comes through",
-        truth=ZERO,
-        tolerance=0.05,
-        reason="a twentieth of the light; steps of half a diameter leave at most .035 of it, whole ones .25, by closed form",
-        stages=("march",),
-        size=(160, 24),
-    ),
+    _layer("opaque layer between empty ones", corrected=False),
+    _layer("opaque layer, opacity by the step's length", corrected=True),
 )

@@ -12,8 +12,6 @@ import numpy as np
 from interreflect import _core
 from interreflect.stability.failure import Reading, Trial
 
-MARCHED = ("density", "opacity_correction")  # knobs of the method's own march that a ray through the layer takes over
-
 
 def injected_gaps(trial: Trial) -> Reading:
     """Mean absolute change of indirect light over its mean, `value` texels of a shadow map a voxel in the place of traced rays.
@@ -28,16 +26,18 @@ def injected_gaps(trial: Trial) -> Reading:
     return Reading(float(np.abs(mapped - traced).mean() / mean), *shown, signed=float(mapped.mean() / mean) - 1)
 
 
-def open_layer(trial: Trial) -> Reading:
-    """Largest share of the sun, over the columns of the picture, that rays in steps of `value` diameters find past an opaque layer."""
+def open_layer(trial: Trial, corrected: bool) -> Reading:
+    """Largest share of the sun that rays in steps of `value` diameters find past an opaque layer; the truth is 0.
+
+    corrected: whether a step's opacity depends on its length; in the papers it does not.
+    """
     method = trial.method
     if _lights_voxels(method):
-        kept = {name: value for name, value in method.march.asdict().items() if name in MARCHED}
-        ray = _core.VoxelCones(half_angle=0.0, first_diameter=1.0, level_bias=0.0, step=trial.value, **kept)
+        ray = _core.VoxelCones(half_angle=0.0, first_diameter=1.0, level_bias=0.0, step=trial.value, opacity_correction=corrected)
         method = method.replace(shadow=ray)
     frame = trial.render(method=method)
     direct = frame.image - frame.indirect
-    return Reading(float(direct.mean((0, 2), dtype=np.float64).max()), direct, np.zeros_like(direct))
+    return Reading(float(direct.max()), direct, np.zeros_like(direct))
 
 
 def _injecting(method: Any, texels: float) -> tuple[Any, Any]:
