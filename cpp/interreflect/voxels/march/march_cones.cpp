@@ -9,7 +9,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "voxels/march/opacity-inl.h"
+#include "voxels/march/seen_lanes-inl.h"
 #include "voxels/march/taps-inl.h"
 
 // Roofline. A step of one cone reads two levels: 8 loads of 16 bytes, all but the first two or three steps from cache; the
@@ -65,7 +65,7 @@ ConeCounts march_batch(const Pyramid& pyramid, const AirMap& air, const ConeSche
         const V px = hn::Load(d, batch.x + first), py = hn::Load(d, batch.y + first), pz = hn::Load(d, batch.z + first);
         const V dx = hn::Load(d, batch.dx + first), dy = hn::Load(d, batch.dy + first), dz = hn::Load(d, batch.dz + first);
         const V exit = hn::Min(hn::Min(exit_distance(d, px, dx, sx), exit_distance(d, py, dy, sy)), exit_distance(d, pz, dz, sz));
-        V entry = zero, blocked_depth = zero, last = exit;
+        V entry = zero, last = exit;
         if constexpr (body) {
             const float radius = 0.5f * std::sqrt(sx * sx + sy * sy + sz * sz);
             const auto ahead = [&](V p, V direction, float size)
@@ -75,12 +75,8 @@ ConeCounts march_batch(const Pyramid& pyramid, const AirMap& air, const ConeSche
             entry = hn::Max(hn::Max(entry_distance(d, px, dx, sx), entry_distance(d, py, dy, sy)), entry_distance(d, pz, dz, sz));
         }
         auto active = hn::FirstN(d, static_cast<std::size_t>(batch.count - first < lanes ? batch.count - first : lanes));
-        const V nx = hn::Load(d, batch.nx + first), ny = hn::Load(d, batch.ny + first), nz = hn::Load(d, batch.nz + first);
-        const V height = hn::Load(d, batch.height + first), width = hn::Load(d, batch.width + first);
-        const V axis = hn::Load(d, batch.axis + first), axis_plane = hn::Load(d, batch.axis_plane + first);
-        const V axis_cells = hn::Load(d, batch.axis_cells + first), aligned = hn::Load(d, batch.aligned + first);
-        const auto has_plane = hn::Gt(width, zero);
-        V r = zero, g = zero, b = zero, open = one;
+        const PlaneLanes<V> plane(d, batch, first);
+        SeenLanes<V> seen(d);
         alignas(64) float colour[4 * max_lanes] = {};
         alignas(64) int octants[max_lanes];
         store_octants(d, dx, dy, dz, octants);
@@ -129,32 +125,13 @@ ConeCounts march_batch(const Pyramid& pyramid, const AirMap& air, const ConeSche
             V tr, tg, tb, ta;
             hn::LoadInterleaved4(d, colour, tr, tg, tb, ta);
             ta = hn::IfThenElseZero(seeing, hn::Min(hn::Max(ta, zero), one));
-            const V h = hn::MulAdd(x, nx, hn::MulAdd(y, ny, hn::MulAdd(z, nz, height))), along = of_axis(d, axis, x, y, z);
-            V own = own_opacity(d, hn::Set(d, l0.inverse_size), h, width, axis_plane, along, axis_cells, aligned);
-            if (two) {
-                const V next = own_opacity(d, hn::Set(d, l1.inverse_size), h, width, axis_plane, along, axis_cells, aligned);
-                own = hn::MulAdd(hn::Sub(next, own), hn::Set(d, step.blend), own);
-            }
-            own = hn::IfThenElseZero(has_plane, own);
-            const V others = hn::Div(hn::Max(hn::Sub(ta, own), zero), hn::Max(hn::Sub(one, own), hn::Set(d, 1e-3f)));
-            const V opacity = hn::IfThenElseZero(seeing, stretched_opacity(d, hn::Min(others, one), step.exponent));
-            const V blocked = newly_blocked(d, open, opacity, step.correlation);
-            // Radiance is premultiplied by the texel's opacity; the step shows more or less of it.
-            const V share = hn::Div(blocked, hn::Max(ta, hn::Set(d, 1e-6f)));
-            r = hn::MulAdd(share, tr, r);
-            g = hn::MulAdd(share, tg, g);
-            b = hn::MulAdd(share, tb, b);
-            if constexpr (merged) blocked_depth = hn::MulAdd(blocked, distance, blocked_depth);
-            open = hn::Sub(open, blocked);
-            active = hn::And(active, hn::Ge(open, hn::Set(d, cut_off)));
+            const V others = plane.without(d, ta, x, y, z, hn::Set(d, l0.inverse_size), hn::Set(d, l1.inverse_size),
+                                           hn::Set(d, step.blend), two);
+            const V opacity = hn::IfThenElseZero(seeing, stretched_opacity(d, others, step.exponent));
+            seen.add(d, tr, tg, tb, ta, newly_blocked(d, seen.open, opacity, step.correlation), distance, merged);
+            active = hn::And(active, hn::Ge(seen.open, hn::Set(d, cut_off)));
         }
-        if constexpr (merged) hn::Store(mean_depth(d, blocked_depth, open), d, batch.depth + first);
-        const auto closed = hn::Lt(open, hn::Set(d, cut_off));
-        const V whole = hn::IfThenElse(closed, hn::Div(one, hn::Sub(one, open)), one);
-        hn::Store(hn::Mul(r, whole), d, batch.r + first);
-        hn::Store(hn::Mul(g, whole), d, batch.g + first);
-        hn::Store(hn::Mul(b, whole), d, batch.b + first);
-        hn::Store(hn::IfThenElse(closed, zero, open), d, batch.open + first);
+        seen.store(d, cut_off, first, batch);
     }
     return counts;
 }

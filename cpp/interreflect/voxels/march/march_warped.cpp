@@ -7,7 +7,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "voxels/march/opacity-inl.h"
+#include "voxels/march/seen_lanes-inl.h"
 #include "voxels/march/taps-inl.h"
 #include "voxels/march/view_lanes-inl.h"
 #include "voxels/march/warp_lanes-inl.h"
@@ -166,17 +166,13 @@ ConeCounts march_vector(const Map& map, const LevelTable& table, const ConeSched
     const V zero = hn::Zero(d), one = hn::Set(d, 1.0f);
     const Lanes3<V> start{hn::Load(d, batch.x + first), hn::Load(d, batch.y + first), hn::Load(d, batch.z + first)};
     const Lanes3<V> direction{hn::Load(d, batch.dx + first), hn::Load(d, batch.dy + first), hn::Load(d, batch.dz + first)};
-    const Lanes3<V> normal{hn::Load(d, batch.nx + first), hn::Load(d, batch.ny + first), hn::Load(d, batch.nz + first)};
-    const V scale = hn::Load(d, batch.scale + first), height = hn::Load(d, batch.height + first);
-    const V width = hn::Load(d, batch.width + first), aligned = hn::Load(d, batch.aligned + first);
-    const V axis = hn::Load(d, batch.axis + first), axis_plane = hn::Load(d, batch.axis_plane + first);
-    const V axis_cells = hn::Load(d, batch.axis_cells + first);
+    const V scale = hn::Load(d, batch.scale + first);
+    const PlaneLanes<V> plane(d, batch, first);
     const V exit = map.exit(d, start, direction);
     const V limit = batch.limited ? hn::Load(d, batch.limit + first) : hn::Set(d, 1e30f);
-    const auto has_plane = hn::Gt(width, zero);
     const bool harmonics = table.views[table.last].faces == 4;  // of directions in the world
     auto active = hn::FirstN(d, static_cast<std::size_t>(std::min(batch.count - first, lanes)));
-    V r = zero, g = zero, b = zero, open = one, blocked_depth = zero;
+    SeenLanes<V> seen(d);
     ConeCounts counts;
     Sight sight;
     for (const auto& step : schedule.steps) {
@@ -193,7 +189,8 @@ ConeCounts march_vector(const Map& map, const LevelTable& table, const ConeSched
         if (hn::AllFalse(d, active)) break;
         counts.steps += static_cast<std::uint64_t>(hn::CountTrue(d, active));
         const auto level = hn::ConvertTo(di, whole), last = hn::Set(di, table.last);
-        const V texels = exp2_of(d, hn::Neg(whole)), next_texels = hn::Mul(texels, hn::Set(d, 0.5f));
+        const V texels = hn::BitCast(d, hn::ShiftLeft<23>(hn::Sub(hn::Set(di, 127), level)));  // 2^-level
+        const V next_texels = hn::Mul(texels, hn::Set(d, 0.5f));
         const auto next = hn::Min(hn::Add(level, hn::Set(di, 1)), last);
         // What is air to a coarser tap is air to the finer ones within it.
         const auto first_texels = place_levels<Map::nested>(d, table, next, next_texels, at.voxels, sight.coarse);
@@ -215,31 +212,15 @@ ConeCounts march_vector(const Map& map, const LevelTable& table, const ConeSched
         V tr, tg, tb, ta;
         hn::LoadInterleaved4(d, sight.colour, tr, tg, tb, ta);
         ta = hn::IfThenElseZero(seeing, hn::Min(hn::Max(ta, zero), one));
-        const V h = hn::Add(dot(at.voxels, normal), height), along = of_axis(d, axis, at.voxels.x, at.voxels.y, at.voxels.z);
-        V own = own_opacity(d, texels, h, width, axis_plane, along, axis_cells, aligned);
-        own = hn::MulAdd(hn::Sub(own_opacity(d, next_texels, h, width, axis_plane, along, axis_cells, aligned), own), blend, own);
-        own = hn::IfThenElseZero(has_plane, own);
-        const V others = hn::Div(hn::Max(hn::Sub(ta, own), zero), hn::Max(hn::Sub(one, own), hn::Set(d, 1e-3f)));
+        const V others = plane.without(d, ta, at.voxels.x, at.voxels.y, at.voxels.z, texels, next_texels, blend, /*two=*/true);
         const V density = hn::Set(d, step.density);
         const V depth = schedule.opacity_correction ? hn::Div(hn::Mul(hn::Mul(density, scale), at.stretch), size) : density;
-        const V clear = power(d, hn::Sub(one, hn::Min(others, one)), depth);
+        const V clear = power(d, hn::Sub(one, others), depth);
         const V opacity = hn::IfThenElseZero(seeing, hn::Sub(one, clear));
-        const V blocked = newly_blocked(d, open, opacity, step.correlation);
-        const V share = hn::Div(blocked, hn::Max(ta, hn::Set(d, 1e-6f)));
-        r = hn::MulAdd(share, tr, r);
-        g = hn::MulAdd(share, tg, g);
-        b = hn::MulAdd(share, tb, b);
-        if (batch.merged) blocked_depth = hn::MulAdd(blocked, distance, blocked_depth);
-        open = hn::Sub(open, blocked);
-        active = hn::And(active, hn::Ge(open, hn::Set(d, cut_off)));
+        seen.add(d, tr, tg, tb, ta, newly_blocked(d, seen.open, opacity, step.correlation), distance, batch.merged);
+        active = hn::And(active, hn::Ge(seen.open, hn::Set(d, cut_off)));
     }
-    hn::Store(mean_depth(d, blocked_depth, open), d, batch.depth + first);
-    const auto closed = hn::Lt(open, hn::Set(d, cut_off));
-    const V full = hn::IfThenElse(closed, hn::Div(one, hn::Sub(one, open)), one);
-    hn::Store(hn::Mul(r, full), d, batch.r + first);
-    hn::Store(hn::Mul(g, full), d, batch.g + first);
-    hn::Store(hn::Mul(b, full), d, batch.b + first);
-    hn::Store(hn::IfThenElse(closed, zero, open), d, batch.open + first);
+    seen.store(d, cut_off, first, batch);
     return counts;
 }
 
