@@ -74,6 +74,9 @@ float contrast_of(const vec3& colour) {
     return glm::length(vec2(colour.r - colour.g, colour.r - colour.b)) / (root_2 + colour.r + colour.g + colour.b);
 }
 
+/// Contrasts closer together than this differ by rounding: triangles of one colour are equals.
+constexpr float least_contrast = 1e-6f;
+
 /// A contribution and its triangle's sides.
 struct Part {
     const Contribution* sums = nullptr;
@@ -95,7 +98,7 @@ struct Voxel {
     void compare_contrast(const Contribution& c, const TriangleSide& side) {
         if (!(c.area() > 0.0f)) return;
         const float found = contrast_of(vec3(c.albedo) / c.area());
-        if (!(found > contrast)) return;
+        if (!(found > contrast + least_contrast)) return;
         contrast = found;
         strongest = {&c, &side};
     }
