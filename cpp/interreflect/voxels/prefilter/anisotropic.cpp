@@ -121,7 +121,7 @@ Pyramid build_anisotropic(const LevelKnobs& knobs, const LitVoxels& lit) {
         const auto second = [&](const LevelView& finest, const PackedView& packed, const LevelView& coarse, int z) {
             HWY_DYNAMIC_DISPATCH(first_faces_slice)(finest, packed, coarse, voxels, z);
         };
-        build_levels_in_bricks(pyramid, voxels, {pack, of_slices(reduce), 0, second}, reduce);
+        build_levels_in_bricks(pyramid, voxels, {pack, of_slices(reduce), 6, second}, reduce);
         return pyramid;
     }
     write_coarse_grids(pyramid, voxels, [](const LevelView& level, const VoxelView& inside, int z) {

@@ -39,21 +39,21 @@ void BrickLayer::put_rows() {
     over_rows(level_.size, cells_, first, first + slices, [&](const ivec3& at, std::size_t begin, std::size_t end) {
         const auto z = static_cast<std::size_t>(at.z - first), y = static_cast<std::size_t>(at.y + 1);
         std::uint32_t* numbers = &number_[z * slice_ + y * row_];
-        std::uint16_t* texels = &texels_[z * texel_slice_ + y * texel_row_];
+        const std::size_t row = z * texel_slice_ + y * texel_row_;
         const auto before = static_cast<std::uint32_t>(level_.size.x) * static_cast<std::uint32_t>(at.y + level_.size.y * at.z);
         for (std::size_t i = begin; i < end; ++i) {
             const std::size_t x = cells_[i] - before + 1;
             const std::size_t number = faces * (i + 1);
             numbers[x] = static_cast<std::uint32_t>(number);
             for (std::size_t v = 0; v < static_cast<std::size_t>(volumes_); ++v)
-                std::memcpy(texels + v * laid_out + texel * x, &level_.texels[texel * (number + v)], 8);
+                std::memcpy(&texels_[v * laid_out + row + texel * x], &level_.texels[texel * (number + v)], 8);
         }
         const auto last = static_cast<std::size_t>(level_.size.x);
         numbers[0] = numbers[1], numbers[last + 1] = numbers[last];
         for (std::size_t v = 0; v < static_cast<std::size_t>(volumes_); ++v) {
-            std::uint16_t* row = texels + v * laid_out;
-            std::memcpy(row, row + texel, 8);
-            std::memcpy(row + texel * (last + 1), row + texel * last, 8);
+            std::uint16_t* first_texel = &texels_[v * laid_out + row];
+            std::memcpy(first_texel, first_texel + texel, 8);
+            std::memcpy(first_texel + texel * (last + 1), first_texel + texel * last, 8);
         }
     });
 }
@@ -98,7 +98,7 @@ void BrickLayer::write_bricks(std::uint32_t* out) const {
 }
 
 LevelView BrickLayer::texels() const {
-    const std::ptrdiff_t shift = -(first_slice() + 1) * static_cast<std::ptrdiff_t>(texel_slice_);
+    const std::ptrdiff_t shift = volumes_ == 0 ? 0 : -(first_slice() + 1) * static_cast<std::ptrdiff_t>(texel_slice_);
     return {const_cast<std::uint16_t*>(texels_.data()) + shift,
             level_.size.x,
             level_.size.y,

@@ -103,7 +103,7 @@ std::vector<PackedTexels> build_layers(Pyramid& pyramid, std::size_t i, std::spa
     Pyramid::Level& fine = pyramid.levels[i];
     Pyramid::Level* coarse = i + 1 < pyramid.levels.size() ? &pyramid.levels[i + 1] : nullptr;
     const ReduceLayer& reduce = i == 0 && filter.second ? filter.second : filter.reduce;
-    const int laid_out = filter.laid_out == 0 ? fine.faces : std::min(filter.laid_out, fine.faces);
+    const int laid_out = std::min(filter.laid_out, fine.faces);
     number_bricks(fine, cells);
     std::vector<PackedTexels> made(static_cast<std::size_t>(fine.bricks.count.z));
     // Kept by threads, not by pieces: megabytes of fresh pages cost more than what is written there.

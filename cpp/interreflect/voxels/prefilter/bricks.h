@@ -19,7 +19,7 @@ using PackVoxels = std::function<void(std::uint16_t* texels, const VoxelView& vo
 struct BrickFilter {
     PackVoxels pack;
     ReduceLayer reduce;
-    int laid_out = 0;         // how many volumes `reduce` wants in `fine`; 0: all
+    int laid_out = 8;         // how many volumes `reduce` reads in `fine` at most
     ReduceLayer second = {};  // for the second level, where that is made in another way
 };
 

@@ -111,7 +111,20 @@ HWY_INLINE Children packed_children(const LevelView& fine, const PackedView& pac
     return c;
 }
 
-/// `packed`: where the octants of the finer level are, unless it is dense.
+/// Whether none of the eight exists; as all_air.
+HWY_INLINE bool none_there(const PackedView& packed, int x, int y, int z) {
+    const std::uint32_t* first = packed.number + 2 * x + 2 * y * static_cast<std::ptrdiff_t>(packed.row) +
+                                 2 * z * static_cast<std::ptrdiff_t>(packed.slice);
+    std::uint64_t any = 0;
+    for (std::size_t i = 0; i < 4; ++i) {
+        std::uint64_t pair;
+        __builtin_memcpy(&pair, first + (i & 1) * packed.row + (i >> 1) * packed.slice, sizeof(pair));
+        any |= pair;
+    }
+    return any == 0;
+}
+
+/// `packed`: where the octants of the finer level are, unless it is dense; `fine` is then read for columns only.
 void reduce_slice_octants(const LevelView& fine, const PackedView& packed, const LevelView& coarse, int z, bool columns) {
     const D d;
     const bool dense = packed.texels == nullptr;
@@ -121,12 +134,13 @@ void reduce_slice_octants(const LevelView& fine, const PackedView& packed, const
         for (std::size_t octant = 0; octant < 8; ++octant)
             __builtin_memset(row + octant * coarse.volume, 0, static_cast<std::size_t>(coarse.nx) * 4 * sizeof(*row));
         for (int x = 0; x < coarse.nx; ++x) {
-            if (all_air(fine, x, y, z)) continue;
+            if (dense ? all_air(fine, x, y, z) : none_there(packed, x, y, z)) continue;
             const Children c = dense ? children(fine, x, y, z) : packed_children(fine, packed, x, y, z);
             V sum = hn::Zero(d);
             for (const auto* texel : c.texel) sum = hn::Add(sum, load(texel));
             const float opacity = columns ? column_opacity(fine, x, y, z)
                                           : hn::GetLane(alpha_of(hn::Min(hn::Mul(sum, hn::Set(d, 0.25f)), hn::Set(d, 1.0f))));
+            if (!(opacity > 0.0f)) continue;
             for (int first = 0; first < 8; first += octants_at_once)
                 store_octants(reduce_octants(c, volume, first, opacity), row + 4 * x, coarse.volume, first);
         }
@@ -239,7 +253,7 @@ Pyramid build_octants(bool columns, const LevelKnobs& knobs, const LitVoxels& li
     if (pyramid.levels[0].dense())
         build_levels(pyramid, all, columns, write, reduce);
     else
-        build_levels_in_bricks(pyramid, all, {pack, reduce_packed, 1}, reduce);
+        build_levels_in_bricks(pyramid, all, {pack, reduce_packed, columns ? 1 : 0}, reduce);
     return pyramid;
 }
 
