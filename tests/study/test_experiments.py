@@ -7,6 +7,7 @@ from pathlib import Path
 import pandas as pd
 import pytest
 from experiments import where_do_voxels_break as where
+from experiments.figures import draw
 from matplotlib.figure import Figure
 
 import interreflect as ir
@@ -77,6 +78,13 @@ def test_break_points_of_voxels_are_written_drawn_and_told(broken):
     figure.canvas.draw()
     texts = [text.get_text() for axes in figure.axes for text in axes.texts]
     assert len(texts) == 3 * 3 and "always" in texts
+
+
+def test_what_a_question_measures_by_itself_is_drawn_like_any_other(broken, monkeypatch, tmp_path):
+    asked = []
+    monkeypatch.setattr(where, "measure", lambda folder: asked.append(folder) or broken[1])
+    (path,) = draw("where_do_voxels_break", tmp_path)
+    assert asked == [tmp_path / "where_do_voxels_break"] and path.read_bytes().startswith(b"%PDF")
 
 
 def test_break_points_of_voxels_cover_every_grid_and_every_filter():
