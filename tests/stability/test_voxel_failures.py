@@ -56,6 +56,13 @@ def test_gaps_show_below_one_texel_a_voxel_and_earlier_where_voxels_are_squeezed
     assert row.outcome == BREAKS and between[0] < row.break_point < between[1]
 
 
+def test_texels_a_voxel_are_told_of_voxels_as_small_as_they_are():
+    """A cube twice as wide as the scene with twice the voxels has voxels of the same size, and so the same gaps."""
+    about_the_camera = METHOD.replace(grid=ir.Grid(resolution=2 * CELLS, region=ir.AroundCamera(width=2)))
+    # Voxels that lie elsewhere in the grid are lit by other texels.
+    assert MAP.read(about_the_camera, 0.5).signed == pytest.approx(MAP.read(METHOD, 0.5).signed, abs=0.03)
+
+
 def test_a_fine_shadow_map_lights_what_traced_rays_light():
     assert MAP.read(METHOD, MAP.easy).error < 0.005  # voxels on the floor's border, partly outside of the map's last texels
 

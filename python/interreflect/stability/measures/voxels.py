@@ -45,10 +45,15 @@ def _injecting(method: Any, texels: float) -> tuple[Any, Any]:
     if not _lights_voxels(method):
         return method, method
     traced = _core.TracedLighting(both_sides=True)
-    finest = method.grid.resolution * 2 ** (method.grid.cascades - 1)  # voxels of the innermost grid's size across the scene
-    size = max(1, round(texels * finest))
+    size = max(1, round(texels * _voxels_across(method)))
     return method.replace(light_voxels=traced), method.replace(light_voxels=_core.ShadowMapInjection(size=size, both_sides=True))
 
 
 def _lights_voxels(method: Any) -> bool:
     return {"grid.resolution", "light_voxels", "march"} <= set(method.knobs())
+
+
+def _voxels_across(method: Any) -> float:
+    """Voxels of the innermost grid, as large as they are before any warp, across the scene."""
+    width = method.knobs().get("grid.region.width", 1.0)  # extents
+    return float(method.grid.resolution * 2 ** (method.grid.cascades - 1) / width)
