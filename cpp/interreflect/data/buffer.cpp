@@ -123,8 +123,10 @@ class Pool {
     void keep_at_most(std::size_t bytes) {
         while (kept_ > bytes) {
             const auto last = std::find_if(free_.rbegin(), free_.rend(), [](const auto& piece) { return piece.second.kept; });
-            const std::size_t gone = std::min(last->second.bytes, kept_ - bytes);
-            const std::uintptr_t begin = last->first + last->second.bytes - gone;
+            const std::uintptr_t end = last->first + last->second.bytes,
+                                 least = end - std::min(last->second.bytes, kept_ - bytes);
+            const std::uintptr_t begin = std::max(last->first, least / huge_page * huge_page);  // huge pages stay whole
+            const std::size_t gone = end - begin;
             madvise(reinterpret_cast<void*>(begin), gone, MADV_DONTNEED);
             kept_ -= gone;
             last->second.bytes -= gone;
