@@ -83,7 +83,7 @@ def ground_light(technique, warp, ahead, sign):
     before = (np.abs(gbuffer.position[..., 1] + 0.5) < 1e-3) & (np.abs(gbuffer.position @ ahead - 2.5) < 0.3)
     before &= np.abs(gbuffer.position @ right) < 0.5
     return [ir.march(march, pyramid, gbuffer, scene, seed=1).irradiance[before].mean()
-            for march in (ir.DiffuseCones(), ir.TracedRays(samples=256))]  # fmt: skip
+            for march in (ir.DiffuseCones(level_bias=-1), ir.TracedRays(samples=256))]  # fmt: skip
 
 
 @pytest.mark.parametrize("technique", [ir.OctantCoverage(), ir.Anisotropic(), ir.SphericalHarmonicVoxels()], ids=repr)

@@ -66,7 +66,7 @@ NOTICED_BY = {
     "half the light in voxels": closed_form(4),
     "voxels clipped at 1": invariant("_linear", scene=BRIGHT),
     "stale history": moving(LAMP_SINKS, "p95", 0.1),
-    "mip of half the weight": failure("occlusion by a wall", 0.2),
+    "mip of half the weight": failure("occlusion by a wall", 0.25),
     "march divided by pi twice": closed_form(4, CONES, 0.07),  # what cones may lose between layers of voxels by their contract
     "march mirrored": failure("shift of chrominance", 1.0, size=SMALL),
     "rows of the march exchanged": failure("pixels without light", 0.05, size=SMALL),  # bars before the sky, which has no light to give

@@ -12,7 +12,7 @@ from interreflect import _core
 # Listing 4.1: its `bias`, `coneHeight`, `lodOffset` and `steps` as the program sets them, its end at alpha .95, its step of a radius.
 LISTING: dict[str, Any] = {
     "normal_offset": 1.0, "start": "height", "level_bias": 0.1, "most_steps": 16, "cut_off": 0.05, "step": 0.5,
-    "density": 1.0, "own_surface": True, "multiply_by_occlusion": True,
+    "density": 1.0, "correlation": 0.0, "own_surface": True, "multiply_by_occlusion": True,
 }  # fmt: skip
 
 FREED_2018: dict[str, Any] = {
@@ -30,7 +30,7 @@ FREED_2018: dict[str, Any] = {
 }
 
 # Section 4: a texel as wide as the cone, half its diameter a step, three quarters of a voxel at the start, half a step off it.
-STEPS: dict[str, Any] = {"step": 0.5, "first_diameter": 0.75, "level_bias": 0.0, "density": 1.0}
+STEPS: dict[str, Any] = {"step": 0.5, "first_diameter": 0.75, "level_bias": 0.0, "density": 1.0, "correlation": 0.0}
 
 REHFELD_2014_VOXELS: dict[str, Any] = {
     "grid": _core.Grid(resolution=128),

@@ -20,7 +20,7 @@ struct DiffuseCones : MarchKnobs, OcclusionKnob {
     int cones = 40;
     double half_angle = 0.0;
 
-    DiffuseCones() : MarchKnobs{.step = 0.75, .normal_offset = 0.75, .density = 0.9} {}
+    DiffuseCones() : MarchKnobs{.step = 0.75, .normal_offset = 0.75, .level_bias = -1.25, .density = 0.9} {}
     bool operator==(const DiffuseCones&) const = default;
     static constexpr auto description =
         describe("DiffuseCones", "Cones over the hemisphere, marched front to back through ever coarser levels of the pyramid.",
