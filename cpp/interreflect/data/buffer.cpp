@@ -13,18 +13,24 @@ namespace interreflect {
 namespace {
 
 constexpr std::size_t page = std::size_t{4} << 10, huge_page = std::size_t{2} << 20;
-constexpr std::size_t pooled = std::size_t{64} << 10;  // smaller buffers are left to the allocator, which keeps them too
+// Smaller buffers are left to the allocator, which keeps them too; under sanitizers all are, lest writes beyond one go unseen.
+#ifdef __SANITIZE_ADDRESS__
+constexpr std::size_t pooled = ~std::size_t{0};
+#else
+constexpr std::size_t pooled = std::size_t{64} << 10;
+#endif
 constexpr std::size_t round_up(std::size_t bytes, std::size_t unit) { return (bytes + unit - 1) / unit * unit; }
 
 /// Address space that begins where a huge page does, without memory yet: as much as asked for or, where the system refuses that,
-/// less, but at least `least` bytes. Null where that is too much.
+/// `least` bytes. Null where that is too much.
 void* reserve(std::size_t& bytes, std::size_t least) {
-    for (; bytes >= least; bytes /= 2) {
+    for (const std::size_t wanted : {bytes, round_up(least, huge_page)}) {
         void* found =
-            mmap(nullptr, bytes + huge_page, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+            mmap(nullptr, wanted + huge_page, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
         if (found == MAP_FAILED) continue;
         const auto first = reinterpret_cast<std::uintptr_t>(found), begin = round_up(first, huge_page);
-        madvise(reinterpret_cast<void*>(begin), bytes, MADV_HUGEPAGE);
+        madvise(reinterpret_cast<void*>(begin), wanted, MADV_HUGEPAGE);
+        bytes = wanted;
         return reinterpret_cast<void*>(begin);
     }
     return nullptr;
