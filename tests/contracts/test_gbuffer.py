@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from placed import placed
+from experiments.shared.placed import placed
 
 import interreflect as ir
 

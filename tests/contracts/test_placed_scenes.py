@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from placed import placed, turned
+from experiments.shared.placed import placed, turned
 
 import interreflect as ir
 

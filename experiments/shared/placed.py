@@ -30,8 +30,9 @@ def placed(scene: ir.Scene, scale: float = 1.0, turn: Matrix | None = None, shif
     matrix = np.eye(4)
     matrix[:3, :3], matrix[:3, 3] = scale * turn, shift
 
-    def point(p: Any) -> tuple[float, ...]:
-        return tuple((scale * turn @ np.asarray(p, np.float64) + shift).tolist())
+    def point(p: Any) -> tuple[float, float, float]:
+        x, y, z = (scale * turn @ np.asarray(p, np.float64) + shift).tolist()
+        return x, y, z
 
     def light_there(light: Any) -> Any:
         changes: dict[str, Any] = {}
