@@ -3,6 +3,7 @@
 #include <sys/mman.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <cstdlib>
 #include <map>
@@ -21,17 +22,21 @@ constexpr std::size_t pooled = std::size_t{64} << 10;
 #endif
 constexpr std::size_t round_up(std::size_t bytes, std::size_t unit) { return (bytes + unit - 1) / unit * unit; }
 
+/// Bytes from where a huge page begins.
+std::size_t beyond_huge_page(const std::byte* at) { return reinterpret_cast<std::uintptr_t>(at) % huge_page; }
+
 /// Address space that begins where a huge page does, without memory yet: as much as asked for or, where the system refuses that,
 /// `least` bytes. Null where that is too much.
-void* reserve(std::size_t& bytes, std::size_t least) {
+std::byte* reserve(std::size_t& bytes, std::size_t least) {
     for (const std::size_t wanted : {bytes, round_up(least, huge_page)}) {
         void* found =
             mmap(nullptr, wanted + huge_page, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
         if (found == MAP_FAILED) continue;
-        const auto first = reinterpret_cast<std::uintptr_t>(found), begin = round_up(first, huge_page);
-        madvise(reinterpret_cast<void*>(begin), wanted, MADV_HUGEPAGE);
+        auto* begin = static_cast<std::byte*>(found);
+        begin += (huge_page - beyond_huge_page(begin)) % huge_page;
+        madvise(begin, wanted, MADV_HUGEPAGE);
         bytes = wanted;
-        return reinterpret_cast<void*>(begin);
+        return begin;
     }
     return nullptr;
 }
@@ -47,23 +52,23 @@ class Pool {
         auto first = find(bytes);
         if (first == free_.end()) {
             std::size_t more = most_reserved;
-            void* memory = reserve(more, bytes);
+            std::byte* memory = reserve(more, bytes);
             if (memory == nullptr) throw std::bad_alloc();
-            free_[reinterpret_cast<std::uintptr_t>(memory)] = {more, false};
+            free_[memory] = {more, false};
             first = find(bytes);
         }
-        const std::uintptr_t begin = first->first;
+        std::byte* const begin = first->first;
         carve(first, bytes);
         used_ += bytes;
         most_used_ = std::max(most_used_, used_);
         keep_at_most(most_used_ + slack - used_);
-        return reinterpret_cast<void*>(begin);
+        return begin;
     }
     void give(void* memory, std::size_t bytes) noexcept {
         const std::lock_guard lock(mutex_);
         used_ -= bytes;
         kept_ += bytes;
-        put(reinterpret_cast<std::uintptr_t>(memory), {bytes, true});
+        put(static_cast<std::byte*>(memory), {bytes, true});
         keep_at_most(std::min(most_idle, most_used_ + slack - used_));
     }
 
@@ -75,7 +80,7 @@ class Pool {
         std::size_t bytes;
         bool kept;  // has pages
     };
-    using Pieces = std::map<std::uintptr_t, Piece>;
+    using Pieces = std::map<std::byte*, Piece>;
 
     /// The free piece from which on so many bytes are free, most of them kept; of several the smallest. The end where there is
     /// none.
@@ -84,7 +89,7 @@ class Pool {
         std::size_t least = 0;
         for (auto begin = free_.begin(); begin != free_.end(); ++begin) {
             std::size_t left = bytes, fresh = 0;
-            std::uintptr_t at = begin->first;
+            const std::byte* at = begin->first;
             for (auto i = begin; left != 0 && i != free_.end() && i->first == at; at += i->second.bytes, ++i) {
                 const std::size_t part = std::min(left, i->second.bytes);
                 left -= part;
@@ -110,7 +115,7 @@ class Pool {
         }
     }
     /// Adds a free piece, one with its neighbours of the same kind.
-    void put(std::uintptr_t begin, Piece piece) {
+    void put(std::byte* begin, Piece piece) {
         auto next = free_.lower_bound(begin);
         if (next != free_.end() && next->first == begin + piece.bytes && next->second.kept == piece.kept) {
             piece.bytes += next->second.bytes;
@@ -129,11 +134,10 @@ class Pool {
     void keep_at_most(std::size_t bytes) {
         while (kept_ > bytes) {
             const auto last = std::find_if(free_.rbegin(), free_.rend(), [](const auto& piece) { return piece.second.kept; });
-            const std::uintptr_t end = last->first + last->second.bytes,
-                                 least = end - std::min(last->second.bytes, kept_ - bytes);
-            const std::uintptr_t begin = std::max(last->first, least / huge_page * huge_page);  // huge pages stay whole
-            const std::size_t gone = end - begin;
-            madvise(reinterpret_cast<void*>(begin), gone, MADV_DONTNEED);
+            std::byte *const end = last->first + last->second.bytes, *begin = end - std::min(last->second.bytes, kept_ - bytes);
+            begin = std::max(last->first, begin - beyond_huge_page(begin));  // huge pages stay whole
+            const auto gone = static_cast<std::size_t>(end - begin);
+            madvise(begin, gone, MADV_DONTNEED);
             kept_ -= gone;
             last->second.bytes -= gone;
             if (last->second.bytes == 0) free_.erase(last->first);

@@ -25,8 +25,8 @@ struct TexelBricks {
     /// Number of a texel, each coordinate in [-1, size].
     std::uint32_t at(int x, int y, int z) const {
         const ivec3 tap = ivec3(x, y, z) + 1, b = glm::min(tap / side, count - 1), in = tap - b * side;
-        const auto number = brick[static_cast<std::size_t>(b.x + count.x * (b.y + count.y * b.z))];
-        return texel[static_cast<std::size_t>(number) * volume + static_cast<std::size_t>(in.x + edge * (in.y + edge * in.z))];
+        const std::ptrdiff_t rows = b.y + static_cast<std::ptrdiff_t>(count.y) * b.z, number = brick[b.x + count.x * rows];
+        return texel[number * volume + in.x + edge * (in.y + edge * in.z)];
     }
 };
 

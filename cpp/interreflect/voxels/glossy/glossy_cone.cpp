@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <vector>
 
 #include "data/environment.h"
@@ -39,7 +40,7 @@ struct Work {
     int width_of(const Reflections& of, int i) const {
         if (technique.half_angle > 0.0) return 1;
         const float degrees = freed() ? widest_freed * std::sqrt(of.alpha[i]) : of.half_angle[i] / degrees_to_radians;
-        return std::min(static_cast<int>(degrees / degrees_a_width + 0.5f), widths - 1);
+        return std::min(static_cast<int>(std::lround(degrees / degrees_a_width)), widths - 1);
     }
 };
 

@@ -128,9 +128,11 @@ class SideBlock {
 LitVoxels light_voxels(const ConeLighting& technique, const LightingTask& task) {
     const VoxelGrid& grid = *task.voxels;
     std::vector<Pyramid> opacities;
+    opacities.reserve(1 + task.others.size());
     opacities.push_back(opacity_of(task.occluders));
     for (const auto& other : task.others) opacities.push_back(opacity_of(other));
     std::vector<const Pyramid*> pyramids;
+    pyramids.reserve(opacities.size());
     for (const Pyramid& opacity : opacities) pyramids.push_back(&opacity);
     const ShadowCones shadows(pyramids, technique, static_cast<float>(technique.half_angle) * degrees_to_radians);
     const ConeSet sky = cosine_cones(technique.sky_cones, 0.0f);

@@ -14,6 +14,7 @@ struct ConeBatch {
     static constexpr int capacity = 256;
 
     int count = 0;
+    bool limited = false, merged = false;
     alignas(64) float x[capacity], y[capacity], z[capacity];     // start, voxels of the pyramid's domain
     alignas(64) float dx[capacity], dy[capacity], dz[capacity];  // unit direction
     // The plane of the receiver, which is taken out of what the cones see: its unit normal, and `height` the negative of its
@@ -24,14 +25,12 @@ struct ConeBatch {
     // 1 where the layer's place in the grid is known, 0 where its mean over all places must do.
     alignas(64) float axis[capacity], axis_plane[capacity], axis_cells[capacity], aligned[capacity];
     // Where `limited`: the cone ends where its filter reaches this far from the start, linear voxels.
-    bool limited = false;
     alignas(64) float limit[capacity];
     // Where the domain is not plain, starts and directions are in linear voxels, the plane is the one that touches the warped
     // surface, and this is how long the start's voxels are in linear ones.
     alignas(64) float scale[capacity];
     // Where `merged`: cones start anywhere, and `depth` is asked for, the mean distance of what blocks them, linear voxels;
     // nothing_there where nothing does.
-    bool merged = false;
     alignas(64) float depth[capacity];
     // Results: radiance in the pyramid's unit (times `scale` is W/(m^2 sr)), and the share that leaves the domain unblocked.
     alignas(64) float r[capacity], g[capacity], b[capacity], open[capacity];

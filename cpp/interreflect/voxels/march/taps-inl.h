@@ -196,15 +196,14 @@ HWY_INLINE hn::Vec<decltype(d4)> sample_texels(const LevelView& level, const Tex
     if (one_volume(level)) return tap(texels(static_cast<std::size_t>(level.faces == 8 ? octant : 0)), fx, fy, fz);
     if (level.faces == 4) {
         auto seen = tap(texels(0), fx, fy, fz);
-        for (int axis = 0; axis < 3; ++axis)
-            seen = hn::MulAdd(tap(texels(static_cast<std::size_t>(axis + 1)), fx, fy, fz), hn::Set(d4, direction[axis * stride]),
-                              seen);
+        for (std::size_t axis = 0; axis < 3; ++axis, direction += stride)
+            seen = hn::MulAdd(tap(texels(axis + 1), fx, fy, fz), hn::Set(d4, *direction), seen);
         return hn::Max(seen, hn::Zero(d4));
     }
     auto sum = hn::Zero(d4);
-    for (int axis = 0; axis < 3; ++axis) {
-        const float along = direction[axis * stride];
-        const auto face = static_cast<std::size_t>(2 * axis + (along > 0.0f ? 0 : 1));
+    for (std::size_t axis = 0; axis < 3; ++axis, direction += stride) {
+        const float along = *direction;
+        const std::size_t face = 2 * axis + (along > 0.0f ? 0 : 1);
         sum = hn::MulAdd(tap(texels(face), fx, fy, fz), hn::Set(d4, along * along), sum);
     }
     return sum;

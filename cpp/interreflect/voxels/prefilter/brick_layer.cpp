@@ -37,10 +37,10 @@ void BrickLayer::put_rows() {
     const std::size_t laid_out = slices * texel_slice_;
     const auto faces = static_cast<std::size_t>(level_.faces);
     over_rows(level_.size, cells_, first, first + slices, [&](const ivec3& at, std::size_t begin, std::size_t end) {
-        const auto z = static_cast<std::size_t>(at.z - first), y = static_cast<std::size_t>(at.y + 1);
+        const auto z = static_cast<std::size_t>(at.z - first), y = static_cast<std::size_t>(at.y) + 1;
         std::uint32_t* numbers = &number_[z * slice_ + y * row_];
         const std::size_t row = z * texel_slice_ + y * texel_row_;
-        const auto before = static_cast<std::uint32_t>(level_.size.x) * static_cast<std::uint32_t>(at.y + level_.size.y * at.z);
+        const auto before = static_cast<std::uint32_t>(level_.size.x * (at.y + level_.size.y * at.z));
         for (std::size_t i = begin; i < end; ++i) {
             const std::size_t x = cells_[i] - before + 1;
             const std::size_t number = faces * (i + 1);

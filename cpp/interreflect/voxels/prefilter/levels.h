@@ -81,7 +81,7 @@ void fill_border(Pyramid::Level& level);
 template <class Body>
 void over_slices(const LevelView& level, const Body& body) {
     const std::size_t per_slice = static_cast<std::size_t>(level.nx) * level.ny * level.faces;
-    const std::size_t block = std::max<std::size_t>(1, 4096 / per_slice);
+    const std::size_t block = 1 + 4096 / (1 + per_slice);
     parallel_blocks(static_cast<std::size_t>(level.nz), block, [&](std::size_t begin, std::size_t end) {
         for (std::size_t z = begin; z < end; ++z) body(static_cast<int>(z));
     });
