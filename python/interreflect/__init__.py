@@ -15,6 +15,7 @@ __version__ = "0.1.0"
 _HOMES = {
     **dict.fromkeys(("Scene", "Mesh", "Material", "Texture", "Camera"), "scenes.values"),
     **dict.fromkeys(("PointLight", "SpotLight", "DirectionalLight", "EnvironmentLight"), "scenes.values"),
+    "directional_lights": "scenes.median_cut",
     "load_scene": "scenes.load",
     "SceneError": "errors",
     "Motion": "motion",
@@ -85,6 +86,7 @@ if TYPE_CHECKING:
     from interreflect.profile import Profile as Profile
     from interreflect.profile import Stage as Stage
     from interreflect.scenes.load import load_scene as load_scene
+    from interreflect.scenes.median_cut import directional_lights as directional_lights
     from interreflect.scenes.values import Camera as Camera
     from interreflect.scenes.values import DirectionalLight as DirectionalLight
     from interreflect.scenes.values import EnvironmentLight as EnvironmentLight
