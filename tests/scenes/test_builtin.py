@@ -26,6 +26,8 @@ VARIANTS = [
     ("grille", {}), ("grille", {"bars": 60, "width": 0.004}),
     ("glossy_plates", {}), ("glossy_plates", {"lobe": "phong"}),
     ("textured_light_box", {}), ("textured_light_box", {"grating": 8}),
+    ("foliage", {"length": 0.2}), ("foliage", {"length": 0.1, "seed": 7}), ("wires", {}), ("wires", {"width": 0.004, "count": 9}),
+    ("depth_edge", {}), ("depth_edge", {"gap": 0.2}), ("ball_in_sky", {}), ("ball_in_sky", {"radius": 0.02}),
 ]  # fmt: skip
 
 
@@ -165,6 +167,10 @@ WRONG = [
     ("corridors", {"length": 3}, "corridors.length"),
     ("grille", {"bars": 2.5}, r"grille.bars must be a whole number in \[2, 200\], got 2.5"),
     ("grille", {"bars": 100, "width": 0.05}, "grille.width"),
+    ("foliage", {"length": 0.005}, r"foliage.length must lie in \[0.01, 0.4\], got 0.005"),
+    ("wires", {"count": 0}, r"wires.count must be a whole number in \[1, 1000\], got 0"),
+    ("depth_edge", {"gap": 4}, "depth_edge.gap"),
+    ("ball_in_sky", {"radius": 0}, "ball_in_sky.radius"),
     ("glossy_plates", {"specular": 1}, "glossy_plates.specular"),
     ("textured_light_box", {"grating": -1}, "textured_light_box.grating"),
 ]

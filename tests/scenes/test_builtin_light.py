@@ -63,3 +63,43 @@ def test_the_grille_is_about_a_pixel_wide_where_its_page_says_so():
     starts = np.flatnonzero(np.diff(np.r_[0, iron.astype(int)]) == 1)
     assert 10 <= len(starts) <= 24  # upright bars across the middle row
     assert 0.5 < iron.sum() / len(starts) < 3
+
+
+def test_shorter_leaves_cover_as_much_of_the_picture():
+    shares = []
+    for length in (0.1, 0.03):
+        albedo = np.asarray(ir.trace_gbuffer(ir.scenes.foliage(length), size=(320, 240)).albedo)
+        shares.append((albedo[..., 1] > 2 * albedo[..., 2] + 0.05).mean())
+    assert shares[0] == pytest.approx(shares[1], rel=0.1) and 0.1 < shares[1] < 0.4
+
+
+def test_leaves_are_cut_out_by_their_mask():
+    leaf = ir.scenes.foliage().meshes[-1].material.mask
+    assert leaf.solid.mean() == pytest.approx(np.pi / 4, abs=0.03)
+
+
+def test_a_wire_is_about_a_pixel_wide_where_its_page_says_so():
+    scene = ir.scenes.wires(width=0.004)
+    hit = np.isfinite(ir.trace_gbuffer(scene, size=(1280, 720)).depth)
+    runs = np.diff(np.flatnonzero(np.diff(np.concatenate([[False], hit[:, 640], [False]]).astype(int))))[::2]
+    assert 1 <= np.median(runs) <= 2 and len(runs) > 10
+    assert hit.mean() < 0.1 and not np.isfinite(ir.trace_gbuffer(scene, size=(64, 36)).depth).all(1).any()  # sky between all of them
+
+
+def test_the_board_is_one_edge_in_depth_and_both_sides_are_lit_by_the_red_wall_alone():
+    scene = ir.scenes.depth_edge()
+    depth = np.asarray(ir.trace_gbuffer(scene, size=(64, 48)).depth)
+    assert (depth[:40, 33:].min() - depth[:40, :30].max()) > 1.5  # above the board's foot, the wall lies two metres behind
+    frame = ir.methods.PathTracing(spp=256, bounces=1).render(scene, size=(64, 48))
+    for part in (frame.indirect[8:40, :30], frame.indirect[8:40, 34:]):
+        assert part.mean() > 1e-3 and part[..., 0].mean() > 3 * part[..., 1].mean()
+    assert frame.direct[8:40, :30].max() == 0
+
+
+def test_the_underside_of_a_ball_in_the_sky_has_the_floors_colour_and_the_sky_is_black():
+    scene = ir.scenes.ball_in_sky(0.05)
+    hit = np.isfinite(ir.trace_gbuffer(scene, size=(96, 72)).depth)
+    frame = ir.methods.PathTracing(spp=64, bounces=0).render(scene, size=(96, 72))
+    assert 0.002 < hit.mean() < 0.02 and frame.image[~hit].max() == 0
+    bottom = ir.methods.PathTracing(spp=256, bounces=1).render(scene, size=(96, 72)).indirect[hit]
+    assert bottom.mean(0)[0] / bottom.mean(0)[2] == pytest.approx(0.7 / 0.3, rel=0.02)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from interreflect.scenes.builtin.atrium import atrium as atrium
+    from interreflect.scenes.builtin.ball_in_sky import ball_in_sky as ball_in_sky
     from interreflect.scenes.builtin.ball_on_floor import ball_on_floor as ball_on_floor
     from interreflect.scenes.builtin.blade import blade as blade
     from interreflect.scenes.builtin.blocked_sky import blocked_sky as blocked_sky
@@ -14,7 +15,9 @@ if TYPE_CHECKING:
     from interreflect.scenes.builtin.cornell_box import cornell_box as cornell_box
     from interreflect.scenes.builtin.corridors import corridors as corridors
     from interreflect.scenes.builtin.dark_room import dark_room as dark_room
+    from interreflect.scenes.builtin.depth_edge import depth_edge as depth_edge
     from interreflect.scenes.builtin.disk_above_point import disk_above_point as disk_above_point
+    from interreflect.scenes.builtin.foliage import foliage as foliage
     from interreflect.scenes.builtin.furnace import furnace as furnace
     from interreflect.scenes.builtin.glossy_plates import glossy_plates as glossy_plates
     from interreflect.scenes.builtin.glossy_receiver import glossy_receiver as glossy_receiver
@@ -30,9 +33,11 @@ if TYPE_CHECKING:
     from interreflect.scenes.builtin.sunlit_floor import sunlit_floor as sunlit_floor
     from interreflect.scenes.builtin.textured_light_box import textured_light_box as textured_light_box
     from interreflect.scenes.builtin.thin_wall import thin_wall as thin_wall
+    from interreflect.scenes.builtin.wires import wires as wires
 
 _MODULES = {
     "atrium": "atrium",
+    "ball_in_sky": "ball_in_sky",
     "ball_on_floor": "ball_on_floor",
     "blade": "blade",
     "blocked_sky": "blocked_sky",
@@ -41,8 +46,10 @@ _MODULES = {
     "corner": "squares",
     "corridors": "corridors",
     "dark_room": "dark_room",
+    "depth_edge": "depth_edge",
     "disk_above_point": "disk_above_point",
     "facing_squares": "squares",
+    "foliage": "foliage",
     "furnace": "furnace",
     "glossy_plates": "glossy_plates",
     "glossy_receiver": "glossy_receiver",
@@ -56,6 +63,7 @@ _MODULES = {
     "sunlit_floor": "sunlit_floor",
     "textured_light_box": "textured_light_box",
     "thin_wall": "thin_wall",
+    "wires": "wires",
 }
 __all__ = list(_MODULES)
 

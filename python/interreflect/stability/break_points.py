@@ -28,7 +28,10 @@ FORMAT = 1
 WAITS, FAILED = "waits", "failed"
 HERE = Path(__file__).resolve().parent
 # Files of this package that decide what is measured; the others decide where, or draw.
-MEASURING = ("failure.py", "moving_failures.py", "reprojection.py", "similar.py", "still_failures.py", "temporal.py", "voxel_failures.py")
+MEASURING = (
+    "cache_failures.py", "failure.py", "moving_failures.py", "reprojection.py", "similar.py", "still_failures.py", "temporal.py",
+    "voxel_failures.py",
+)  # fmt: skip
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
