@@ -17,6 +17,7 @@ ABOVE = {
     "shading": {"data", "math", "visibility"},
     "voxels": {"data", "math", "visibility", "shading"},
     "direct": {"data", "math", "visibility", "shading", "voxels"},
+    "caches": {"data", "math", "visibility", "shading", "voxels", "direct"},
     "reference": {"data", "math", "visibility", "shading", "voxels", "direct"},
 }
 

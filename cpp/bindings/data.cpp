@@ -188,6 +188,9 @@ void bind_counts(py::module_& m) {
                 enter("rays", c.rays), enter("shadow_rays", c.shadow_rays), enter("paths", c.paths), enter("samples", c.samples),
                     enter("voxels", c.voxels);
                 enter("cones", c.cones), enter("cone_steps", c.cone_steps), enter("voxel_fetches", c.voxel_fetches);
+                enter("clusters", c.clusters), enter("caches", c.caches), enter("reused_caches", c.reused_caches);
+                enter("cache_evaluations", c.cache_evaluations), enter("covered_pixels", c.covered_pixels);
+                enter("uncovered_pixels", c.uncovered_pixels);
                 return d;
             },
             "The counts that are not zero.");

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "bindings/arrays.h"
+#include "bindings/pyramids.h"
 #include "bindings/rooms.h"
 #include "bindings/run.h"
 #include "bindings/technique.h"
@@ -30,11 +31,7 @@ void bind_shadow(py::module_& m) {
 
 SharedLight cone_shadow(const VoxelCones& technique, const BoundScene& s, const GBuffer& g,
                         const std::vector<std::shared_ptr<const Pyramid>>& pyramids, std::uint32_t seed) {
-    std::vector<const Pyramid*> each;
-    for (const auto& pyramid : pyramids) {
-        if (pyramid == nullptr) throw py::type_error("pyramids must be Pyramids, got None");
-        each.push_back(pyramid.get());
-    }
+    const auto each = plain_pointers(pyramids);
     return run(
         [&] { return std::make_shared<DirectLight>(shadow(technique, s.scene, *s.intersector, *s.lights, g, each, seed)); });
 }

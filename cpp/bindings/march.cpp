@@ -3,6 +3,7 @@
 #include <pybind11/stl.h>
 
 #include "bindings/arrays.h"
+#include "bindings/pyramids.h"
 #include "bindings/rooms.h"
 #include "bindings/run.h"
 #include "bindings/technique.h"
@@ -49,16 +50,6 @@ py::array_t<float> owned_image(Buffer<vec3> pixels, int width, int height) {
     const auto* data = reinterpret_cast<const float*>(held->data());
     const py::capsule owner(held.release(), [](void* buffer) { delete static_cast<Buffer<vec3>*>(buffer); });
     return py::array_t<float>({height, width, 3}, data, owner);
-}
-
-std::vector<const Pyramid*> plain_pointers(const std::vector<std::shared_ptr<const Pyramid>>& pyramids) {
-    if (pyramids.empty()) throw py::value_error("pyramids must hold at least one Pyramid");
-    std::vector<const Pyramid*> each;
-    for (const auto& pyramid : pyramids) {
-        if (pyramid == nullptr) throw py::type_error("pyramids must be Pyramids, got None");
-        each.push_back(pyramid.get());
-    }
-    return each;
 }
 
 }  // namespace

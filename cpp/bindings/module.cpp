@@ -42,5 +42,6 @@ PYBIND11_MODULE(_core, m) {
     bind_voxels(m);
     bind_direct(m);
     bind_march(m);
+    bind_caches(m);
     bind_calibration(m);
 }

@@ -22,6 +22,7 @@ _HOMES = {
     **dict.fromkeys(("Frame",), "frame"),
     **dict.fromkeys(("Profile", "Stage"), "profile"),
     **dict.fromkeys(("trace_gbuffer", "voxelize", "light_voxels", "prefilter", "march", "glossy", "shadow", "sky", "shade"), "stages"),
+    **dict.fromkeys(("distribute", "fill", "preconvolve", "interpolate"), "stages"),
     **dict.fromkeys(("techniques", "exact"), "stages"),
     **dict.fromkeys(("VoxelCoverage", "voxel_coverage"), "coverage"),
     "voxel_view": "cubes",
@@ -96,10 +97,14 @@ if TYPE_CHECKING:
     from interreflect.scenes.values import Scene as Scene
     from interreflect.scenes.values import SpotLight as SpotLight
     from interreflect.scenes.values import Texture as Texture
+    from interreflect.stages import distribute as distribute
     from interreflect.stages import exact as exact
+    from interreflect.stages import fill as fill
     from interreflect.stages import glossy as glossy
+    from interreflect.stages import interpolate as interpolate
     from interreflect.stages import light_voxels as light_voxels
     from interreflect.stages import march as march
+    from interreflect.stages import preconvolve as preconvolve
     from interreflect.stages import prefilter as prefilter
     from interreflect.stages import shade as shade
     from interreflect.stages import shadow as shadow

@@ -1889,6 +1889,548 @@ class GlossyCone:
     @property
     def multiply_by_occlusion(self) -> bool:
         ...
+class CachePlaces:
+    """
+    Where radiance caches stand, tile by tile; n caches in parallel arrays.
+    """
+
+    def __len__(self) -> int:
+        ...
+
+    @property
+    def body(self) -> numpy.typing.NDArray[numpy.uint32]:
+        """
+        (n,): of the surface; 0 is the world.
+        """
+
+    @property
+    def bytes(self) -> int:
+        ...
+
+    @property
+    def cluster(self) -> numpy.typing.NDArray[numpy.uint32]:
+        """
+        (height, width): the cache of each pixel's cluster; 2^32 - 1 where nothing was hit, or none stands.
+        """
+
+    @property
+    def columns(self) -> int:
+        ...
+
+    @property
+    def counts(self) -> Counts:
+        ...
+
+    @property
+    def footprint(self) -> numpy.typing.NDArray[numpy.float32]:
+        """
+        (n,): how long a tile is on the surface there, scene units.
+        """
+
+    @property
+    def members(self) -> numpy.typing.NDArray[numpy.uint32]:
+        """
+        (n,): pixels of its cluster.
+        """
+
+    @property
+    def normal(self) -> numpy.typing.NDArray[numpy.float32]:
+        """
+        (n, 3): unit, the axis of the cache's hemisphere.
+        """
+
+    @property
+    def pixel(self) -> numpy.typing.NDArray[numpy.uint32]:
+        """
+        (n,): the pixel where it stands, row * width + column.
+        """
+
+    @property
+    def position(self) -> numpy.typing.NDArray[numpy.float32]:
+        """
+        (n, 3): of the surface, world space.
+        """
+
+    @property
+    def rows(self) -> int:
+        ...
+
+    @property
+    def screen(self) -> numpy.typing.NDArray[numpy.float32]:
+        """
+        (n, 2): where each is seen, pixels from the upper left corner.
+        """
+
+    @property
+    def tile(self) -> int:
+        """
+        Side of the tiles, pixels.
+        """
+class FilledCaches:
+    """
+    The radiance that arrives at caches: a hemisphere map each, of equal solid angles (hemisphere_direction).
+    """
+
+    @property
+    def bytes(self) -> int:
+        ...
+
+    @property
+    def counts(self) -> Counts:
+        ...
+
+    @property
+    def places(self) -> CachePlaces:
+        ...
+
+    @property
+    def resolution(self) -> int:
+        ...
+
+    @property
+    def scale(self) -> float:
+        ...
+
+    @property
+    def texels(self) -> numpy.typing.NDArray[typing.Any]:
+        """
+        (n, resolution, resolution, 4) float16: mean radiance over `scale`, and which share of the texel is open.
+        """
+class ConvolvedCaches:
+    """
+    Caches ready for lobes of every width.
+    """
+
+    @property
+    def bytes(self) -> int:
+        ...
+
+    @property
+    def counts(self) -> Counts:
+        ...
+
+    @property
+    def filled(self) -> FilledCaches:
+        ...
+
+    @property
+    def levels(self) -> tuple[typing.Any, ...]:
+        """
+        Level 1 and on of every cache: (n, size, size, 4) float16 each.
+        """
+
+    @property
+    def table(self) -> numpy.typing.NDArray[typing.Any]:
+        """
+        (n, table, table, 4) float16: mean over the cosine lobe about each texel's direction.
+        """
+class CacheLight:
+    """
+    Light that pixels get from caches.
+    """
+
+    @property
+    def bytes(self) -> int:
+        ...
+
+    @property
+    def counts(self) -> Counts:
+        ...
+
+    @property
+    def gathered(self) -> GatheredLight:
+        """
+        What arrives over the hemisphere, as `march` returns it.
+        """
+
+    @property
+    def glossy(self) -> GlossyLight:
+        """
+        What the glossy lobe reflects, as `glossy` returns it.
+        """
+
+    @property
+    def weight(self) -> numpy.typing.NDArray[numpy.float32]:
+        """
+        (height, width): sum of the caches' weights; 0 where nothing was hit. Of a pixel without one, that of what lit it.
+        """
+class Equidistant:
+    """A cache at the middle pixel of every tile."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self, *, caches: int=..., tile: int=...) -> None:
+        ...
+
+    def replace(self, *, caches: int=..., tile: int=...) -> Equidistant:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+
+    @property
+    def caches(self) -> int:
+        ...
+
+    @property
+    def tile(self) -> int:
+        ...
+class CubeFaceClustered:
+    """One cache for the pixels that share tile, depth slice and a cell of a cube's faces."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self, *, caches: int=..., tile: int=..., slice_depth: float=..., subdivisions: int=...) -> None:
+        ...
+
+    def replace(self, *, caches: int=..., tile: int=..., slice_depth: float=..., subdivisions: int=...) -> CubeFaceClustered:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+
+    @property
+    def caches(self) -> int:
+        ...
+
+    @property
+    def tile(self) -> int:
+        ...
+
+    @property
+    def slice_depth(self) -> float:
+        ...
+
+    @property
+    def subdivisions(self) -> int:
+        ...
+class Clustered:
+    """One cache for the pixels that share tile, depth slice and the nearest of three axes adapted to the tile's normals."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self, *, caches: int=..., tile: int=..., slice_depth: float=..., bins: int=..., smoothing: float=..., exponent: float=...) -> None:
+        ...
+
+    def replace(self, *, caches: int=..., tile: int=..., slice_depth: float=..., bins: int=..., smoothing: float=..., exponent: float=...) -> Clustered:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+
+    @property
+    def caches(self) -> int:
+        ...
+
+    @property
+    def tile(self) -> int:
+        ...
+
+    @property
+    def slice_depth(self) -> float:
+        ...
+
+    @property
+    def bins(self) -> int:
+        ...
+
+    @property
+    def smoothing(self) -> float:
+        ...
+
+    @property
+    def exponent(self) -> float:
+        ...
+class CachePerPixel:
+    """A cache at every pixel."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self) -> None:
+        ...
+
+    def replace(self) -> CachePerPixel:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+class ConeFill:
+    """One cone a texel, marched through the voxels."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self, *, resolution: int=..., half_angle: float=..., step: float=..., first_diameter: float=..., normal_offset: float=..., level_bias: float=..., density: float=..., correlation: float=..., cut_off: float=..., own_surface: bool=..., start: str=..., start_height: float=..., most_steps: int=..., step_growth: float=..., opacity_correction: bool=...) -> None:
+        ...
+
+    def replace(self, *, resolution: int=..., half_angle: float=..., step: float=..., first_diameter: float=..., normal_offset: float=..., level_bias: float=..., density: float=..., correlation: float=..., cut_off: float=..., own_surface: bool=..., start: str=..., start_height: float=..., most_steps: int=..., step_growth: float=..., opacity_correction: bool=...) -> ConeFill:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+
+    @property
+    def resolution(self) -> int:
+        ...
+
+    @property
+    def half_angle(self) -> float:
+        ...
+
+    @property
+    def step(self) -> float:
+        ...
+
+    @property
+    def first_diameter(self) -> float:
+        ...
+
+    @property
+    def normal_offset(self) -> float:
+        ...
+
+    @property
+    def level_bias(self) -> float:
+        ...
+
+    @property
+    def density(self) -> float:
+        ...
+
+    @property
+    def correlation(self) -> float:
+        ...
+
+    @property
+    def cut_off(self) -> float:
+        ...
+
+    @property
+    def own_surface(self) -> bool:
+        ...
+
+    @property
+    def start(self) -> str:
+        ...
+
+    @property
+    def start_height(self) -> float:
+        ...
+
+    @property
+    def most_steps(self) -> int:
+        ...
+
+    @property
+    def step_growth(self) -> float:
+        ...
+
+    @property
+    def opacity_correction(self) -> bool:
+        ...
+class TracedFill:
+    """Rays spread over each texel against the triangles, radiance read from the finest voxel at the hit."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self, *, resolution: int=..., samples: int=...) -> None:
+        ...
+
+    def replace(self, *, resolution: int=..., samples: int=...) -> TracedFill:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+
+    @property
+    def resolution(self) -> int:
+        ...
+
+    @property
+    def samples(self) -> int:
+        ...
+class MipChain:
+    """Ever coarser maps for glossy lobes, and a table of the cosine lobe."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self, *, table: int=..., width: str=..., level_bias: float=...) -> None:
+        ...
+
+    def replace(self, *, table: int=..., width: str=..., level_bias: float=...) -> MipChain:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+
+    @property
+    def table(self) -> int:
+        ...
+
+    @property
+    def width(self) -> str:
+        ...
+
+    @property
+    def level_bias(self) -> float:
+        ...
+class LobeIntegral:
+    """Every lobe is integrated over the filled map where it is needed."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self, *, samples: int=...) -> None:
+        ...
+
+    def replace(self, *, samples: int=...) -> LobeIntegral:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+
+    @property
+    def samples(self) -> int:
+        ...
+class Splat:
+    """Every cache adds to the pixels within its reach; the sums are normalised in the end."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self, *, radius: float=..., world_radius: float=..., max_angle: float=..., uncovered: str=..., weight: str=...) -> None:
+        ...
+
+    def replace(self, *, radius: float=..., world_radius: float=..., max_angle: float=..., uncovered: str=..., weight: str=...) -> Splat:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+
+    @property
+    def radius(self) -> float:
+        ...
+
+    @property
+    def world_radius(self) -> float:
+        ...
+
+    @property
+    def max_angle(self) -> float:
+        ...
+
+    @property
+    def uncovered(self) -> str:
+        ...
+
+    @property
+    def weight(self) -> str:
+        ...
+class Gather:
+    """Every pixel takes the weighted mean of the caches in the tiles around it, each read for its own lobes."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self, *, radius: float=..., world_radius: float=..., max_angle: float=..., uncovered: str=...) -> None:
+        ...
+
+    def replace(self, *, radius: float=..., world_radius: float=..., max_angle: float=..., uncovered: str=...) -> Gather:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+
+    @property
+    def radius(self) -> float:
+        ...
+
+    @property
+    def world_radius(self) -> float:
+        ...
+
+    @property
+    def max_angle(self) -> float:
+        ...
+
+    @property
+    def uncovered(self) -> str:
+        ...
+class Evaluated:
+    """Every pixel has a cache of its own, whatever the distribution."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self) -> None:
+        ...
+
+    def replace(self) -> Evaluated:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
 def _rebuild(arg0: typing.Any, arg1: dict[str, typing.Any]) -> typing.Any:
     """
     Makes a technique again from its knobs (pickle).
@@ -1905,9 +2447,29 @@ def cone_step_rate(repeats: typing.SupportsInt | typing.SupportsIndex) -> float:
     """
     Million steps of cones a second, each two trilinear look-ups in a pyramid of half floats; best of `repeats`.
     """
+def distribute(technique: CachePerPixel | Clustered | CubeFaceClustered | Equidistant, gbuffer: GBuffer, scene: Scene, last: CachePlaces | None=None) -> CachePlaces:
+    """
+    Where radiance caches stand.
+    """
+def fill(technique: TracedFill | ConeFill, places: CachePlaces, pyramids: collections.abc.Sequence[Pyramid], scene: Scene, seed: typing.SupportsInt | typing.SupportsIndex=0) -> FilledCaches:
+    """
+    The radiance that arrives at every cache.
+    """
 def glossy(technique: TracedRays | GlossyCone, pyramids: collections.abc.Sequence[Pyramid], gbuffer: GBuffer, scene: Scene, seed: typing.SupportsInt | typing.SupportsIndex) -> GlossyLight:
     """
     Light that the glossy lobe reflects.
+    """
+def hemisphere_direction(x: typing.SupportsFloat | typing.SupportsIndex, y: typing.SupportsFloat | typing.SupportsIndex) -> typing.Annotated[list[float], 'FixedSize(3)']:
+    """
+    Unit direction about +z of a point of the hemisphere map's unit square [Shirley and Chiu 1997, and Lambert's projection].
+    """
+def hemisphere_square(direction: typing.Annotated[collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], 'FixedSize(3)']) -> typing.Annotated[list[float], 'FixedSize(2)']:
+    """
+    The inverse of hemisphere_direction, of a unit direction.
+    """
+def interpolate(technique: Evaluated | Gather | Splat, caches: ConvolvedCaches | None, gbuffer: GBuffer, scene: Scene, fill: TracedFill | ConeFill, preconvolve: LobeIntegral | MipChain, pyramids: collections.abc.Sequence[Pyramid], seed: typing.SupportsInt | typing.SupportsIndex=0) -> CacheLight:
+    """
+    Light that pixels get from caches.
     """
 def light_voxels(technique: TracedLighting | ShadowMapInjection | ConeLighting | Bounces | BlendHistory, scene: Scene, voxels: VoxelGrid, seed: typing.SupportsInt | typing.SupportsIndex=0, history: None | Pyramid | LitVoxels=None, others: collections.abc.Sequence[VoxelGrid]=[]) -> LitVoxels:
     """
@@ -1928,6 +2490,10 @@ def path_trace(scene: Scene, camera: Camera, width: typing.SupportsInt | typing.
 def place(grid: Grid, scene: Scene, camera: Camera | None=None, aspect: typing.SupportsFloat | typing.SupportsIndex=1.0) -> Domain:
     """
     The domain of a grid in a scene, for a picture `aspect` times as wide as high.
+    """
+def preconvolve(technique: LobeIntegral | MipChain, filled: FilledCaches) -> ConvolvedCaches:
+    """
+    Maps and tables for lobes of every width.
     """
 def prefilter(technique: VolumeCoverage | SurfaceCoverage | Anisotropic | OctantCoverage | SphericalHarmonicVoxels, lit: LitVoxels) -> Pyramid:
     """

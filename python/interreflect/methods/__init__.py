@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 _HOMES = {
     "AmbientOcclusion": "ambient_occlusion",
+    "ClusteredRadianceCaching": "clustered_radiance_caching",
     "ConstantAmbient": "constant_ambient",
     "PathTracing": "path_tracing",
     "PathTracingDenoised": "path_tracing_denoised",
@@ -26,6 +27,7 @@ def __dir__() -> list[str]:
 
 if TYPE_CHECKING:
     from interreflect.methods.ambient_occlusion import AmbientOcclusion as AmbientOcclusion
+    from interreflect.methods.clustered_radiance_caching import ClusteredRadianceCaching as ClusteredRadianceCaching
     from interreflect.methods.constant_ambient import ConstantAmbient as ConstantAmbient
     from interreflect.methods.path_tracing import PathTracing as PathTracing
     from interreflect.methods.path_tracing_denoised import PathTracingDenoised as PathTracingDenoised

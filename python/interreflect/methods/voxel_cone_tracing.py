@@ -6,31 +6,17 @@ from typing import Any
 
 from interreflect import _core
 from interreflect.frame import Image
-from interreflect.methods.bodies import parts_of, voxelize_bodies
 from interreflect.methods.knobs import knob, stage
-from interreflect.methods.method import Method, method
+from interreflect.methods.method import method
 from interreflect.methods.prepared import View
 from interreflect.methods.voxel_presets import PRESETS
+from interreflect.methods.voxel_scene import VoxelMethod
 from interreflect.profile import Profile
-from interreflect.scenes.scene import Scene
-from interreflect.stages import (
-    glossy,
-    holds_all_bounces,
-    light_history,
-    light_voxels,
-    march,
-    place,
-    prefilter,
-    shade,
-    shadow,
-    sky,
-    trace_gbuffer,
-    voxelize,
-)
+from interreflect.stages import glossy, march, shade, shadow, sky, trace_gbuffer
 
 
 @method
-class VoxelConeTracing(Method):
+class VoxelConeTracing(VoxelMethod):
     """One indirect bounce by cones through prefiltered voxels, after Crassin et al. 2011, Rehfeld et al. 2014 (section 3.1) and Freed 2018.
 
     Everything is done anew in every frame; only the ray hierarchy is kept, and the voxels' light by BlendHistory and Bounces.
@@ -56,34 +42,11 @@ class VoxelConeTracing(Method):
 
     preset_values = PRESETS
 
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        if self.bodies == "apart" and holds_all_bounces(self.light_voxels):
-            raise ValueError("VoxelConeTracing: Bounces gathers in one hierarchy; it does not go with bodies='apart'")
-
-    def precompute(self, scene: Scene) -> dict[str, Any]:
-        """Voxels of the bodies, as large as those of the first camera's grid; without a camera they wait for the first frame."""
-        if self.bodies == "together" or not scene.cameras:
-            return {}
-        return {"bodies": voxelize_bodies(self.voxelize, scene, place(self.grid, scene).voxel_size)}
-
-    @property
-    def bounces(self) -> int | None:
-        """One; all where `light_voxels` gathers them from frame to frame."""
-        return None if holds_all_bounces(self.light_voxels) else 1
-
     def compose(self, view: View, profile: Profile) -> tuple[Image, Image, Any]:
         scene, seed = view.scene, view.seed
         with profile.stage("gbuffer") as note:
             gbuffer = note(trace_gbuffer(scene, view.camera, view.size, self.shade))
-        with profile.stage("voxelize") as note:
-            domain = place(self.grid, scene, view.camera, view.size)
-            apart = self.bodies == "apart"
-            parts = parts_of(self.voxelize, view, domain, note) if apart else [note(voxelize(self.voxelize, scene, domain))]
-        with profile.stage("light_voxels") as note:
-            lit = [note(self._light(scene, parts, k, seed, view.history)) for k in range(len(parts))]
-        with profile.stage("prefilter") as note:
-            pyramids = [note(prefilter(self.prefilter, one)) for one in lit]
+        pyramids = self.pyramids(view, profile, view.history)
         with profile.stage("march") as note:
             gathered = note(march(self.march, pyramids, gbuffer, scene, share=self.share, seed=seed))
         reflected = None
@@ -94,14 +57,9 @@ class VoxelConeTracing(Method):
             lights = note(shadow(self.shadow, scene, gbuffer, seed, pyramids=pyramids))
         with profile.stage("sky") as note:
             environment = note(sky(self.sky, scene, gbuffer, seed, gathered=gathered, glossy=reflected))
-        kept = [light_history(self.light_voxels, pyramid) for pyramid in pyramids]
-        del parts, lit, pyramids  # whatever the next frame does not build on
+        kept = self.kept_light(pyramids)
+        del pyramids  # whatever the next frame does not build on
         with profile.stage("shade"):
             indirect = shade(gbuffer, gathered, reflected)
             direct = gbuffer.emission + lights.radiance + environment.radiance
-        return direct, indirect, kept if apart and kept[0] is not None else kept[0]
-
-    def _light(self, scene: Scene, parts: list[_core.VoxelGrid], k: int, seed: int, history: Any) -> _core.LitVoxels:
-        """Part k, as lit as the others let it be."""
-        last = history[k] if isinstance(history, list) else history
-        return light_voxels(self.light_voxels, scene, parts[k], seed, history=last, others=parts[:k] + parts[k + 1 :])
+        return direct, indirect, kept

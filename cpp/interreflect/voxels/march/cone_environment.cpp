@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "data/environment.h"
+#include "math/octahedral_map.h"
 #include "math/parallel.h"
 
 namespace interreflect {
@@ -11,24 +12,6 @@ namespace {
 constexpr int map_size = 32;                          // 4.5 degrees a texel
 constexpr int source_width = 64, source_height = 32;  // 5.6 degrees a texel
 constexpr float texel_angle = pi / source_height;
-
-/// Unit direction to the octahedral map's unit square, and back.
-vec2 to_square(const vec3& d) {
-    const float sum = std::fabs(d.x) + std::fabs(d.y) + std::fabs(d.z);
-    vec2 p(d.x / sum, d.z / sum);
-    if (d.y < 0.0f) p = {std::copysign(1.0f - std::fabs(p.y), p.x), std::copysign(1.0f - std::fabs(p.x), p.y)};
-    return p * 0.5f + 0.5f;
-}
-vec3 from_square(const vec2& square) {
-    const vec2 p = square * 2.0f - 1.0f;
-    vec3 d(p.x, 1.0f - std::fabs(p.x) - std::fabs(p.y), p.y);
-    if (d.y < 0.0f) {
-        const float x = d.x;
-        d.x = std::copysign(1.0f - std::fabs(d.z), d.x);
-        d.z = std::copysign(1.0f - std::fabs(x), d.z);
-    }
-    return glm::normalize(d);
-}
 
 /// Direction, solid angle and mean radiance of a patch of the sky.
 struct Patch {
@@ -78,7 +61,7 @@ ConeEnvironment::ConeEnvironment(const Scene& scene, float half_angle) {
     parallel_pieces(map_size, [&](std::size_t row) {
         for (int x = 0; x < map_size; ++x) {
             const vec3 axis =
-                from_square({(static_cast<float>(x) + 0.5f) / map_size, (static_cast<float>(row) + 0.5f) / map_size});
+                octahedral_direction({(static_cast<float>(x) + 0.5f) / map_size, (static_cast<float>(row) + 0.5f) / map_size});
             vec3 sum(0);
             float weight = 0;
             for (const auto& patch : patches) {
@@ -94,7 +77,7 @@ ConeEnvironment::ConeEnvironment(const Scene& scene, float half_angle) {
 vec3 ConeEnvironment::mean(const vec3& direction) const {
     if (map_.empty()) return constant_;
     // Bilinear; the map's border is the seam of the lower half, where clamping costs at most half a texel.
-    const vec2 p = glm::clamp(to_square(direction) * static_cast<float>(map_size) - 0.5f, 0.0f, map_size - 1.0f);
+    const vec2 p = glm::clamp(octahedral_square(direction) * static_cast<float>(map_size) - 0.5f, 0.0f, map_size - 1.0f);
     const int x = std::min(static_cast<int>(p.x), map_size - 2), y = std::min(static_cast<int>(p.y), map_size - 2);
     const float fx = p.x - static_cast<float>(x), fy = p.y - static_cast<float>(y);
     const vec3* row = map_.data() + y * map_size + x;

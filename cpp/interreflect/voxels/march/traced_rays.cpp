@@ -109,22 +109,6 @@ struct Choice {
     vec3 direction, weight;
 };
 
-/// The surface of a pixel, for its lobe alone.
-SurfacePoint glossy_point(const GBuffer& g, const Scene& scene, std::size_t pixel) {
-    const Material& material = scene.materials[scene.material_of(g.triangle[pixel])];
-    SurfacePoint point;
-    point.position = g.position[pixel];
-    point.geometric_normal = g.geometric_normal[pixel];
-    point.normal = g.normal[pixel];
-    point.albedo = vec3(0);
-    point.specular = g.specular[pixel];
-    point.alpha = g.alpha[pixel];
-    const PixelLobe lobe = lobe_at(g, material, pixel);
-    point.exponent = lobe.exponent;
-    point.lobe = lobe.lobe;
-    return point;
-}
-
 constexpr std::uint32_t march_stage = 1, glossy_stage = 2;
 
 }  // namespace
@@ -161,7 +145,7 @@ GlossyLight glossy(const TracedRays& technique, Pyramids pyramids, const GBuffer
             tracer, glossy_stage, tile, [&](std::size_t pixel) { return max_component(gbuffer.specular[pixel]) > 0.0f; },
             [&](std::size_t pixel, const vec2& u) {
                 const vec3 wo = glm::normalize(gbuffer.camera.position - gbuffer.position[pixel]);
-                const BrdfSample sample = sample_brdf(glossy_point(gbuffer, scene, pixel), wo, 0.0f, u);
+                const BrdfSample sample = sample_brdf(glossy_surface(gbuffer, scene, pixel), wo, 0.0f, u);
                 return Choice{sample.wi, sample.weight * each};
             },
             [&](const Sample& sample, const vec3& radiance, const vec3& outside, bool) {

@@ -1,0 +1,35 @@
+/// Three axes for the normals of a tile [Rehfeld et al. 2014, 3.2, "Adapting to Normals"].
+#pragma once
+#include <array>
+#include <span>
+#include <vector>
+
+#include "math/octahedral_map.h"
+
+namespace interreflect {
+
+/// A histogram of normals over the sphere is smoothed by a Gaussian; the bin rated highest gives an axis, and
+/// w = (w + 1) (1 - |n . n_best|^exponent) lowers what is collinear with it, for the next one. The 1 makes bins that no normal is
+/// in gain, orthogonal ones most: that is what spreads the later axes where few normals ask for them (ERRATA: not purely
+/// decreasing, and blind to the sign: whoever uses the axes must tell their two ends apart).
+class NormalAxes {
+  public:
+    /// bins: on a side of the octahedral map; smoothing: standard deviation, radians.
+    NormalAxes(int bins, float smoothing, float exponent);
+
+    int count() const { return bins_ * bins_; }
+    int bin_of(const vec3& normal) const {
+        const vec2 at = octahedral_square(normal) * static_cast<float>(bins_);
+        return std::min(static_cast<int>(at.x), bins_ - 1) + bins_ * std::min(static_cast<int>(at.y), bins_ - 1);
+    }
+    /// The axes of how many normals each bin holds.
+    std::array<vec3, 3> choose(std::span<const float> histogram) const;
+
+  private:
+    int bins_;
+    std::vector<vec3> directions_;
+    std::vector<float> smooth_;  // row by row: what each bin gives to others; rows add up to 1
+    std::vector<float> lower_;   // 1 - |n . m|^exponent of two bins
+};
+
+}  // namespace interreflect
