@@ -6,12 +6,12 @@ from typing import Annotated
 
 from interreflect.scenes.builtin.knobs import Knob, built_in
 from interreflect.scenes.builtin.shapes import box, mesh, quad
-from interreflect.scenes.values import Camera, Material, Scene, SpotLight
+from interreflect.scenes.values import Camera, Material, PointLight, Scene
 
 
 @built_in
-def depth_edge(gap: Annotated[float, Knob("from the board to the wall behind", 0.05, 3, unit="m")] = 2.0) -> Scene:
-    """A white board that covers the left half of the picture, a wall and a floor behind it; a spot on the red side wall lights both.
+def depth_edge(gap: Annotated[float, Knob("from the board to the wall behind", 0.5, 3, unit="m")] = 2.0) -> Scene:
+    """A white board that covers the left half of the picture before a lit room with a red side wall; only indirect light reaches the board.
 
     The camera looks along the wall's normal past the board's upright edge. Camera "front".
     """
@@ -21,7 +21,7 @@ def depth_edge(gap: Annotated[float, Knob("from the board to the wall behind", 0
     side = quad((2, 0, -1.5), (0, 0, 3.5), (0, 2.6, 0))
     front = gap - 1.5
     board = box((-1.6, 0, front - 0.04), (0, 2.2, front))
-    spot = SpotLight(position=(0.5, 2.4, 1.6), direction=(1.5, -1.2, -0.6), intensity=(60, 60, 60), inner=18, outer=24)
+    lamp = PointLight(position=(1.2, 2.2, front - 0.3), intensity=(4, 4, 4))
     camera = Camera(position=(0.05, 1.2, 3.2), target=(0.05, 1.1, 0), fov_x=44)
     meshes = [mesh(wall, white), mesh(floor, white), mesh(side, red), mesh(board, Material(name="board", albedo=(0.75, 0.75, 0.75)))]
-    return Scene(meshes=meshes, lights=[spot], cameras={"front": camera})
+    return Scene(meshes=meshes, lights=[lamp], cameras={"front": camera})
