@@ -1,17 +1,23 @@
 """Failures of caches: what they read, and that they read nothing where pixels share nothing."""
 
 import dataclasses
+from functools import partial
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from faults import overwrite
 
 import interreflect as ir
+from interreflect import stages
 from interreflect.methods.knobs import knob
 from interreflect.methods.method import Method, method
 from interreflect.stages import trace_gbuffer
 
 ROWS = {row.name: row for row in ir.stability.failures}
 UNCOVERED = [row for row in ir.stability.failures if row.name.startswith("pixels without a cache")]
+LOBE = ROWS["reflection in a sharp lobe"]
+CACHES = ir.methods.ClusteredRadianceCaching(grid=ir.Grid(resolution=64), distribute=ir.Clustered(caches=0, tile=8))
 CONES = ir.methods.VoxelConeTracing(grid=ir.Grid(resolution=32), share=ir.EveryPixel())
 
 
@@ -67,18 +73,83 @@ def test_a_method_whose_pixels_share_nothing_has_no_pixel_without_a_cache(row):
         assert row.read(own, row.at(0.3)).error == 0
 
 
-def test_light_in_the_wrong_place_is_an_error_where_energy_is_none():
-    """The lobe row sees what the row of a sharp lobe's energy does not."""
-    sharp, energy = (dataclasses.replace(ROWS[name], size=(32, 24)) for name in ("reflection in a sharp lobe", "sharp Phong lobe"))
+def own_cache(resolution=32):
+    """Light as it arrives: a cache a pixel, its lobes integrated."""
+    return CACHES.replace({"interpolate": ir.Evaluated(), "preconvolve": ir.LobeIntegral(), "fill.resolution": resolution})
 
-    class Upside(ir.methods.PathTracing):
-        def compose(self, view, profile):
-            direct, indirect, *_ = super().compose(view, profile)
-            return direct, np.ascontiguousarray(indirect[::-1]), None
 
-    right, wrong = ir.methods.PathTracing(spp=2048), Upside(spp=2048)
-    assert sharp.read(right, 300.0, seed=9).error < 0.5 * sharp.tolerance < sharp.tolerance < sharp.read(wrong, 300.0, seed=9).error
-    assert energy.read(wrong, 300.0, seed=9).error < energy.tolerance
+def test_a_lobe_is_blurred_the_more_the_sharper_it_is_and_the_coarser_the_cache():
+    row = dataclasses.replace(LOBE, size=(24, 18))
+    wide, sharp, finer, truth = (row.read(own_cache(n), exponent).error for n, exponent in ((8, 5.0), (8, 1e3), (32, 1e3), (64, 1e3)))
+    assert sharp > 3 * wide and sharp > 3 * finer > 0
+    assert truth == 0
+
+
+def test_a_method_without_caches_blurs_none():
+    for own in (CONES, ir.methods.ConstantAmbient(), ir.methods.PathTracing(spp=1)):
+        assert LOBE.read(own, 50.0).error == 0
+
+
+def test_blur_of_no_light_is_refused():
+    black = dataclasses.replace(LOBE, scene=lambda n: ir.scenes.glossy_receiver(exponent=n).replace(lights=()))
+    with pytest.raises(ValueError, match="no indirect light"):
+        black.read(CACHES, 50.0)
+
+
+def equidistant(stage, technique, *rest):
+    return stage(ir.Equidistant(caches=0, tile=technique.tile), *rest)
+
+
+def mirrored(stage, *arguments):
+    filled = stage(*arguments)
+    overwrite(filled.texels, filled.texels[:, :, ::-1])
+    return filled
+
+
+def coarser(stage, technique, *rest):
+    return stage(technique.replace(level_bias=technique.level_bias + 2), *rest)
+
+
+def too_near(stage, technique, *rest):
+    return stage(technique.replace(radius=0.4), *rest)
+
+
+def left_black(stage, *arguments):
+    light = stage(*arguments)
+    gathered = light.gathered
+    served = light.weight != 1  # that of the one cache that lights a pixel without any; sums of weights are other numbers
+    overwrite(gathered.irradiance, gathered.irradiance * served[..., None])
+    return SimpleNamespace(gathered=gathered, glossy=light.glossy)
+
+
+def read(name, value, method):
+    return lambda: ROWS[name].read(method, value).error / ROWS[name].tolerance
+
+
+A_PIXEL = CACHES.replace(distribute=ir.CachePerPixel())
+INTEGRATED = A_PIXEL.replace(preconvolve=ir.LobeIntegral())
+BY_LEVEL = A_PIXEL.replace(preconvolve=ir.MipChain(width="resultant", level_bias=-1.0))
+SCATTERED = CACHES.replace(distribute=ir.Equidistant(caches=0, tile=8))
+FAULTS = {
+    "equidistant places": ("distribute", equidistant, read("pixels without a cache on wires", 0.02, CACHES)),
+    "caches mirrored": ("fill", mirrored, read("reflection in a sharp lobe", 20.0, INTEGRATED)),
+    "lobes two levels too wide": ("preconvolve", coarser, read("reflection in a sharp lobe", 50.0, BY_LEVEL)),
+    "half a tile gathered": ("interpolate", too_near, read("pixels without a cache in foliage", 0.1, CACHES)),
+    "pixels without a cache left black": ("interpolate", left_black, read("pixels without light", 0.03, SCATTERED)),
+}
+
+
+def test_every_stage_of_its_own_has_a_fault():
+    assert {stage for stage, _, _ in FAULTS.values()} == {"distribute", "fill", "preconvolve", "interpolate"}
+
+
+@pytest.mark.parametrize("fault", FAULTS)
+def test_a_planted_fault_is_noticed_and_the_sound_stage_passes(fault, monkeypatch):
+    stage, faulty, error = FAULTS[fault]
+    sound = error()
+    assert sound <= 1, f"the sound stage fails already: {sound:.2f} of the tolerance"
+    monkeypatch.setattr(f"interreflect.methods.clustered_radiance_caching.{stage}", partial(faulty, getattr(stages, stage)))
+    assert error() > 1
 
 
 def test_a_small_ball_whose_light_is_lost_is_noticed():

@@ -1,8 +1,13 @@
-"""What caches leave out."""
+"""What caches leave out, and what they blur."""
 
 from __future__ import annotations
 
+import numpy as np
+
+from interreflect import _core
 from interreflect.stability.failure import Reading, Trial
+
+FINE = 64  # texels on a side of a cache that resolves the lobes of an exponent of 1,000: 1.4 degrees each
 
 
 def uncovered(trial: Trial) -> Reading:
@@ -14,3 +19,20 @@ def uncovered(trial: Trial) -> Reading:
     counts = {} if (stage := frame.profile.stages.get("interpolate")) is None else stage.counts
     without, with_one = counts.get("uncovered_pixels", 0), counts.get("covered_pixels", 0)
     return Reading(without / (without + with_one) if without else 0.0, frame.image)
+
+
+def blurred(trial: Trial) -> Reading:
+    """Mean change of indirect light over its mean, from the picture in which every pixel has a fine cache of its own and its lobes are
+    integrated over it; the same voxels fill both.
+
+    0 for methods that interpolate nothing. ValueError where there is no indirect light to compare with.
+    """
+    frame, method = trial.render(), trial.method
+    if not {"fill.resolution", "preconvolve", "interpolate"} <= set(method.knobs()):
+        return Reading(0.0, frame.image, frame.image)
+    own = {"fill.resolution": FINE, "preconvolve": _core.LobeIntegral(), "interpolate": _core.Evaluated()}
+    truth = trial.render(method=method.replace(own))
+    mean = float(truth.indirect.mean(dtype=np.float64))
+    if not mean > 0:
+        raise ValueError("the picture has no indirect light from which blur could be read")
+    return Reading(float(np.abs(frame.indirect.astype(np.float64) - truth.indirect).mean() / mean), frame.image, truth.image)

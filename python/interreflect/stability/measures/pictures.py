@@ -89,11 +89,6 @@ def hue(image: Image, truth: Image, trial: Trial) -> float:
     return max(metrics.hue_shift(image, truth), 180 * float((image < 0).mean()))
 
 
-def misplaced(image: Image, truth: Image, trial: Trial) -> float:
-    """Mean absolute error over the truth's mean."""
-    return float(np.abs(image.astype(np.float64) - truth).mean() / truth.mean(dtype=np.float64))
-
-
 def energy(image: Image, truth: Image, trial: Trial) -> float:
     """Energy ratio less 1; 0 where picture and truth are black."""
     return metrics.energy_ratio(image, truth) - 1
