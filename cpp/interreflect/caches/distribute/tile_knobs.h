@@ -18,13 +18,13 @@ struct TileKnobs {
 };
 
 struct SliceKnob {
-    double slice_depth = 1.0;
+    double slice_depth = 4.0;
 
     bool operator==(const SliceKnob&) const = default;
-    static constexpr auto params = std::tuple{
-        Param{"slice_depth", &SliceKnob::slice_depth,
-              "how deep a cluster is, in widths of its tile there: 1 makes cubes [Olsson et al. 2012]; 0: not cut by depth",
-              Unit::tiles, between(0, 64)}};
+    static constexpr auto params = std::tuple{Param{"slice_depth", &SliceKnob::slice_depth,
+                                                    "how deep a cluster is, in widths of its tile there: 1 makes cubes [Olsson "
+                                                    "et al. 2012], of which slanted surfaces need many; 0: not cut by depth",
+                                                    Unit::tiles, between(0, 64)}};
 };
 
 }  // namespace interreflect

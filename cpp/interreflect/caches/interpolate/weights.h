@@ -12,8 +12,8 @@ namespace interreflect {
 
 struct WeightKnobs {
     double radius = 2.0;
-    double world_radius = 2.0;
-    double max_angle = 75.0;
+    double world_radius = 1.0;
+    double max_angle = 60.0;
     std::string uncovered = "nearest";
 
     bool operator==(const WeightKnobs&) const = default;

@@ -1,0 +1,44 @@
+"""Figure 8: How far caches are gathered: radius in tiles, time and muddiness."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import pandas as pd
+from matplotlib.figure import Figure
+
+import interreflect as ir
+from experiments.rehfeld.caches import caching, cars, difference, indirect, own
+from experiments.shared.panels import as_light, panels
+
+RADII = (1.0, 1.5, 2.0, 3.0, 4.0)
+
+
+def studies() -> Sequence[ir.Study]:
+    # The radius in space grows with that on the screen, as it would end the weights otherwise.
+    ways = [caching(interpolate__radius=radius, interpolate__world_radius=radius / 2) for radius in RADII]
+    return [cars("gathering radius, pictures", [own(16), *ways]), cars("gathering radius, times", ways, repeats=3)]
+
+
+def table(pictures: ir.Records, times: ir.Records) -> pd.DataFrame:
+    """A row per radius: milliseconds of the evaluation, caches read a pixel, difference from a cache a pixel, roughness of the light."""
+    exact, rows = indirect(pictures, 0), {}
+    for i, radius in enumerate(RADII):
+        row = times[i].row()
+        seen = float(row["stage.interpolate.covered_pixels"])
+        rows[radius] = {
+            "milliseconds": float(row["stage.interpolate.milliseconds"]),
+            "read": float(row["stage.interpolate.cache_evaluations"]) / seen,
+            "difference": difference(indirect(pictures, 1 + i), exact),
+        }
+    return pd.DataFrame(rows).T
+
+
+def chart(pictures: ir.Records, times: ir.Records) -> Figure:
+    exact, found = indirect(pictures, 0), table(pictures, times)
+    shown = []
+    for i, radius in enumerate(RADII):
+        row = found.loc[radius]
+        title = f"f = {radius:g}: {row['milliseconds']:.0f} ms, {row['read']:.0f} caches a pixel, {row['difference']:.1%} off"
+        shown.append((title, as_light(indirect(pictures, 1 + i), exact)))
+    return panels([*shown, ("a cache at every pixel", as_light(exact, exact))], columns=3)
