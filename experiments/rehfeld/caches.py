@@ -36,8 +36,8 @@ def cars(
 ) -> ir.Study:  # fmt: skip
     """Pictures of the cars; not timed unless `repeats` says so."""
     return ir.Study(
-        name=f"Rehfeld: {name}, exponent {exponent:g}", scenes=[two_cars(exponent)], cameras=[camera], methods=methods, size=size, bounces=1,
-        reference=reference, repeats=repeats, max_repeats=max(repeats, 1),
+        name=f"Rehfeld: {name}, exponent {exponent:g}", scenes=[two_cars(exponent)], cameras=[camera], methods=methods, size=size,
+        bounces=1, reference=reference, repeats=repeats, max_repeats=max(repeats, 1),
     )  # fmt: skip
 
 

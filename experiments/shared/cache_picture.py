@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from interreflect import _core
-from interreflect.cluster_view import cluster_view
+from interreflect.clusters import cluster_view
 from interreflect.frame import Image
 from interreflect.images import tone_map
 from interreflect.methods.cache_presets import PRESETS
