@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pandas as pd
 import pytest
+from experiments import where_do_caches_break as caches
 from experiments import where_do_voxels_break as where
 from experiments.figures import draw
 from matplotlib.figure import Figure
@@ -53,7 +54,7 @@ def test_an_experiment_is_a_question_whose_records_make_its_chart(path, tmp_path
 
 
 def test_what_is_no_study_measures_by_itself():
-    assert [path.stem for path in FILES if path not in EXPERIMENTS] == ["where_do_voxels_break"]
+    assert [path.stem for path in FILES if path not in EXPERIMENTS] == ["where_do_caches_break", "where_do_voxels_break"]
 
 
 @pytest.fixture(scope="module")
@@ -93,3 +94,22 @@ def test_break_points_of_voxels_cover_every_grid_and_every_filter():
     assert any(method.knobs()["grid.cascades"] > 1 for method in where.grids.values())
     assert {m.knobs()["prefilter"] for m in where.filters.values()} == {technique.__name__ for technique in ir.techniques("prefilter")}
     assert set(where.FAILURES) <= {row.name for row in ir.stability.failures}
+
+
+def test_break_points_of_caches_are_measured_for_places_and_ways_to_read(tmp_path):
+    row = "pixels without a cache on wires"
+    small = {
+        "placed": ({name: caches.placed[name] for name in ("Clustered", "Equidistant")}, [row]),
+        "read": ({name: caches.read[name] for name in ("Gather", "Gather, half a tile")}, [row]),
+    }
+    found = caches.measure(tmp_path, small, sweep=2, bisections=1)
+    assert found["placed"].cell("Clustered", row).outcome == found["read"].cell("Gather", row).outcome == "never"
+    assert found["placed"].cell("Equidistant", row).outcome == "always"
+    assert len(caches.table(found["read"]).loc[row]) == 2 and (tmp_path / "placed.html").exists()
+    caches.chart(found).canvas.draw()
+
+
+def test_break_points_of_caches_cover_every_distribution_and_every_interpolation():
+    for stage, methods in (("distribute", caches.placed), ("interpolate", caches.read), ("preconvolve", caches.held)):
+        assert {m.knobs()[stage] for m in methods.values()} == {technique.__name__ for technique in ir.techniques(stage)}
+    assert set(caches.FAILURES) <= {row.name for row in ir.stability.failures}
