@@ -6,11 +6,15 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import interreflect as ir
-from experiments.ledger import freed, rehfeld, untested
+from experiments.ledger import freed, rehfeld, rehfeld_caches, untested
 from experiments.ledger.claim import NOT_YET, Claim, Verdict, judge
 from experiments.shared.keep import FOLDER, records_of
 
-CLAIMS: tuple[Claim, ...] = (*freed.CLAIMS, *rehfeld.CLAIMS, *untested.CLAIMS)
+CLAIMS: tuple[Claim, ...] = (
+    *freed.CLAIMS,
+    *sorted((*rehfeld.CLAIMS, *rehfeld_caches.CLAIMS), key=lambda claim: int(claim.name[1:])),
+    *untested.CLAIMS,
+)
 NOTES = (
     "Times are those of this machine's processor, not of the papers' graphics cards: ratios and what depends on what are compared.",
     "Freed's normal mapping is left out: our scenes have no normal maps.",

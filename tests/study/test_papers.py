@@ -7,6 +7,7 @@ import matplotlib.figure
 import pytest
 from experiments.figures import LEDGER, PAPERS, draw, figures_of, main, make, names, questions
 from experiments.ledger.book import CLAIMS
+from experiments.rehfeld import caches
 from experiments.shared import scenes
 from experiments.shared.keep import records_of
 
@@ -28,11 +29,14 @@ def stand_in(monkeypatch):
     scene = atrium.replace(lights=[*atrium.lights, sun], cameras={"nave": atrium.camera, "gallery": atrium.camera})
     scenes.load.cache_clear()
     monkeypatch.setattr(scenes, "load", lambda path: scene)
+    cars = scene.replace(cameras={"cars": atrium.camera, "grille": atrium.camera})
+    monkeypatch.setattr(caches, "two_cars", lambda exponent: cars)
 
 
 def smaller(study):
     """The same question with few pixels and samples, and grids that take no time."""
     less = {"grid.resolution": lambda n: n // 4, "texels": lambda n: n // 16, "frames": lambda n: 2}
+    less |= {"distribute.caches": lambda n: n // 64, "fill.samples": lambda n: min(n, 4), "maps": lambda n: 1}
     less |= {"light_voxels.size": lambda n: max(n // 16, 4), "shadow.size": lambda n: n // 16}
     methods = []
     for method in study.methods:
@@ -41,6 +45,10 @@ def smaller(study):
     return dataclasses.replace(
         study, methods=methods, size=(48, 32), repeats=min(study.repeats, 1), max_repeats=1, reference=ir.Reference(noise=1.0, max_spp=4)
     )
+
+
+def test_every_figure_of_the_caches_paper_but_its_diagram_has_its_file():
+    assert {f"rehfeld/figure_{n}" for n in (1, 3, 4, 5, 6, 7, 8)} <= set(FIGURES)
 
 
 def test_every_figure_and_table_of_the_thesis_has_its_file():
