@@ -93,3 +93,19 @@ def trace_lights(c: Calibration, rays: float, voxels: float) -> float:
 def prefilter(c: Calibration, texels_bytes: float, voxels: float) -> float:
     """All levels written once; of each voxel cell and radiance are read."""
     return move(c, texels_bytes + 16 * voxels)
+
+
+def distribute(c: Calibration, pixels: int) -> float:
+    """Each pixel's depth, normal and position are read once, the number of its cluster is written."""
+    return move(c, (4 + 12 + 12 + 4) * pixels)
+
+
+def create(c: Calibration, steps: float, texels_bytes: float) -> float:
+    """Cones, whose texels are written once, read once for what is made of them, and that written."""
+    return cone_march(c, steps) + move(c, 3 * texels_bytes)
+
+
+def evaluate(c: Calibration, pixels: int, evaluations: float) -> float:
+    """A cache's weight for a pixel (20 operations), two bilinear looks of its chain and one of its table (12 texels of four channels, a
+    multiply-add each); of each pixel nine vectors and numbers are read and its light written."""
+    return max(compute(c, (20 + 2 * 48) * evaluations), move(c, (36 + 56) * pixels))

@@ -10,7 +10,7 @@ import time
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-SUITES = ("core", "voxels")
+SUITES = ("core", "voxels", "caches")
 
 
 def main(suite: str) -> None:

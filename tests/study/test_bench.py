@@ -58,6 +58,9 @@ def test_every_limit_is_positive_and_grows_with_the_work():
         lambda n: limits.voxelize(c, n, n, n, n),
         lambda n: limits.light_map(c, n),
         lambda n: limits.inject(c, n, n),
+        lambda n: limits.distribute(c, n),
+        lambda n: limits.create(c, n, n),
+        lambda n: limits.evaluate(c, n, n),
         lambda n: limits.trace_lights(c, n, n),
         lambda n: limits.prefilter(c, n, n),
     ]
