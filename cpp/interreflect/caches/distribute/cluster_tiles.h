@@ -1,7 +1,9 @@
 /// Clusters of all tiles: keys, groups, counts, and one cache each, as in clustered shading [Olsson et al. 2012], tile by tile.
 #pragma once
 #include <cmath>
+#include <limits>
 #include <numeric>
+#include <span>
 #include <vector>
 
 #include "caches/distribute/place.h"
@@ -18,11 +20,19 @@ inline Tile tile_at(const CachePlaces& places, std::size_t i) {
     return {x, y, std::min(x + places.tile, places.width), std::min(y + places.tile, places.height), i};
 }
 
-/// How many clusters tiles of a size make, estimated from at most 512 of them spread over the picture.
-/// Keys: of(gbuffer, tile) is a function from a pixel of that tile to its key.
+/// The keys of a tile's pixels, row by row. Keys: fill(gbuffer, tile, key) writes them, no_cache where nothing was hit.
+template <class Keys>
+std::span<const std::uint32_t> keys_of(const GBuffer& gbuffer, const Tile& tile, const Keys& keys) {
+    thread_local std::vector<std::uint32_t> key;
+    key.resize(static_cast<std::size_t>(tile.x1 - tile.x0) * (tile.y1 - tile.y0));
+    keys.fill(gbuffer, tile, key.data());
+    return key;
+}
+
+/// How many clusters tiles of a size make, estimated from at most 128 of them spread over the picture.
 template <class Keys>
 double count_clusters(const GBuffer& gbuffer, int tile, const Keys& keys) {
-    constexpr std::size_t most = 512;
+    constexpr std::size_t most = 128;
     const CachePlaces tiles = tiles_of(gbuffer, tile);
     const std::size_t all = static_cast<std::size_t>(tiles.columns) * tiles.rows, looked_at = std::min(all, most);
     std::vector<std::size_t> found(looked_at);
@@ -31,32 +41,33 @@ double count_clusters(const GBuffer& gbuffer, int tile, const Keys& keys) {
         // The golden ratio's multiples are spread evenly and in step with no row.
         const double place = static_cast<double>(k) * 0.6180339887498949;
         const auto i = all <= most ? k : static_cast<std::size_t>((place - std::floor(place)) * static_cast<double>(all));
-        const Tile at = tile_at(tiles, i);
-        clusters.group(gbuffer, at, keys.of(gbuffer, at));
-        found[k] = clusters.clusters.size();
+        found[k] = clusters.count(keys_of(gbuffer, tile_at(tiles, i), keys));
     });
     const auto sum = static_cast<double>(std::accumulate(found.begin(), found.end(), std::size_t{0}));
     return looked_at == 0 ? 0.0 : sum * static_cast<double>(all) / static_cast<double>(looked_at);
 }
 
-/// The tile's side whose clusters come nearest to `target` in ratio; fewer clusters for larger tiles is what the search builds
-/// on. make(tile) are the keys for tiles of that size.
+/// A tile's side whose clusters are near `target`: fewer clusters for larger tiles, by a power of their side that is learned on
+/// the way, is what the search builds on. make(tile) are the keys for tiles of that size.
 template <class MakeKeys>
 int find_tile(const GBuffer& gbuffer, int target, const MakeKeys& make) {
-    const int largest = std::max(gbuffer.width, gbuffer.height);
-    int below = 1, above = largest;  // sides with too many clusters, and with too few
-    double many = -1, few = -1;      // how many those are; -1: not counted
-    double side = std::sqrt(1.5 * static_cast<double>(gbuffer.pixels()) / target);
-    while (above - below > 1) {
-        const int middle = std::clamp(static_cast<int>(std::lround(side)), below + 1, above - 1);
-        const double count = count_clusters(gbuffer, middle, make(middle));
-        (count > target ? below : above) = middle;
-        (count > target ? many : few) = count;
-        side = count > 0 ? middle * std::sqrt(count / target) : 0.5 * (below + above);
+    constexpr int most_probes = 8;
+    constexpr double near_enough = 0.02;                                 // the count is an estimate
+    int below = 0, above = std::max(gbuffer.width, gbuffer.height) + 1;  // sides with too many clusters, and with too few
+    double side = std::sqrt(4.0 * static_cast<double>(gbuffer.pixels()) / target), power = 1.5;
+    int best = 1, last = 0;
+    double least = std::numeric_limits<double>::infinity(), last_excess = 0;
+    for (int probe = 0; probe < most_probes && above - below > 1; ++probe) {
+        const int tile = static_cast<int>(std::clamp(std::round(side), below + 1.0, above - 1.0));
+        const double count = count_clusters(gbuffer, tile, make(tile)), excess = std::log(std::max(count, 0.5) / target);
+        if (std::fabs(excess) < least) least = std::fabs(excess), best = tile;
+        if (least < near_enough) break;
+        (excess > 0.0 ? below : above) = tile;
+        if (last > 0) power = std::clamp((last_excess - excess) / std::log(static_cast<double>(tile) / last), 0.5, 2.5);
+        last = tile, last_excess = excess;
+        side = tile * std::exp(excess / power);
     }
-    if (many < 0) many = count_clusters(gbuffer, below, make(below));
-    if (few < 0) few = count_clusters(gbuffer, above, make(above));
-    return few <= 0 || many / target < target / few ? below : above;
+    return best;
 }
 
 /// One cache for every cluster of a picture's tiles.
@@ -73,7 +84,7 @@ CachePlaces cluster_tiles(const GBuffer& gbuffer, int tile, const Keys& keys) {
     parallel_pieces(all, [&](std::size_t i) {
         thread_local TileClusters clusters;
         const Tile at = tile_at(places, i);
-        clusters.group(gbuffer, at, keys.of(gbuffer, at));
+        clusters.group(gbuffer, at, keys_of(gbuffer, at, keys));
         clusters.choose_pixels(gbuffer, at);
         for (const auto& cluster : clusters.clusters) chosen[i].push_back({cluster.pixel, cluster.members});
         const std::uint32_t* slot = clusters.slot.data();

@@ -3,37 +3,37 @@
 #include "caches/distribute/cluster_tiles.h"
 #include "caches/distribute/depth_slices.h"
 #include "caches/distribute/normal_axes.h"
+#include "caches/distribute/tile_kernels.h"
 
 namespace interreflect {
 namespace {
-
-/// The signed axis, of three, to which a normal is nearest: 0 to 5.
-std::uint32_t nearest_axis(const std::array<vec3, 3>& axes, const vec3& normal) {
-    std::uint32_t nearest = 0;
-    float most = -1.0f;
-    for (std::uint32_t k = 0; k < 3; ++k) {
-        const float along = glm::dot(axes[k], normal);
-        if (std::fabs(along) > most) most = std::fabs(along), nearest = 2 * k + (along < 0.0f ? 1 : 0);
-    }
-    return nearest;
-}
 
 struct AdaptedKeys {
     const NormalAxes& axes;
     DepthSlices slices;
 
-    auto of(const GBuffer& gbuffer, const Tile& tile) const {
+    void fill(const GBuffer& gbuffer, const Tile& tile, std::uint32_t* key) const {
+        const std::array<vec3, 3> chosen = axes_of(gbuffer, tile);
+        thread_local std::vector<std::uint32_t> axis;
+        axis.resize(static_cast<std::size_t>(tile.x1 - tile.x0));
+        for (int y = tile.y0; y < tile.y1; ++y, key += axis.size()) {
+            const std::size_t first = static_cast<std::size_t>(y) * gbuffer.width + tile.x0;
+            slices.of(gbuffer.depth.data() + first, axis.size(), key);
+            nearest_axes(gbuffer.normal.data() + first, axis.size(), chosen, axis.data());
+            for (std::size_t x = 0; x < axis.size(); ++x) key[x] = key[x] == no_cache ? no_cache : 6 * key[x] + axis[x];
+        }
+    }
+    std::array<vec3, 3> axes_of(const GBuffer& gbuffer, const Tile& tile) const {
         thread_local std::vector<float> histogram;
+        thread_local std::vector<std::uint32_t> bin;
         histogram.assign(static_cast<std::size_t>(axes.count()), 0.0f);
-        for (int y = tile.y0; y < tile.y1; ++y)
-            for (int x = tile.x0; x < tile.x1; ++x) {
-                const std::size_t pixel = static_cast<std::size_t>(y) * gbuffer.width + x;
-                if (gbuffer.hit(pixel)) histogram[static_cast<std::size_t>(axes.bin_of(gbuffer.normal[pixel]))] += 1.0f;
-            }
-        const std::array<vec3, 3> chosen = axes.choose(histogram);
-        return [this, &gbuffer, chosen](std::size_t pixel) {
-            return slices.of(gbuffer.depth[pixel]) * 6 + nearest_axis(chosen, gbuffer.normal[pixel]);
-        };
+        bin.resize(static_cast<std::size_t>(tile.x1 - tile.x0));
+        for (int y = tile.y0; y < tile.y1; ++y) {
+            const std::size_t first = static_cast<std::size_t>(y) * gbuffer.width + tile.x0;
+            bin_normals(gbuffer.normal.data() + first, bin.size(), axes.bins(), bin.data());
+            for (std::size_t x = 0; x < bin.size(); ++x) histogram[bin[x]] += gbuffer.hit(first + x) ? 1.0f : 0.0f;
+        }
+        return axes.choose(histogram);
     }
 };
 

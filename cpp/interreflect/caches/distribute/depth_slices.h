@@ -1,9 +1,9 @@
 /// Depths in slices that are as deep as a multiple of a tile's width there [Olsson et al. 2012, 3.1, equation 2].
 #pragma once
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
 
+#include "caches/distribute/tile_kernels.h"
 #include "data/scene.h"
 
 namespace interreflect {
@@ -23,15 +23,12 @@ class DepthSlices {
         : inverse_near_(near > 0.0f ? 1.0f / near : 1.0f),
           slices_an_octave_(depth > 0.0 ? static_cast<float>(1.0 / std::log2(1.0 + depth * angle)) : 0.0f) {}
 
-    /// The slice of a positive distance, not negative.
-    std::uint32_t of(float distance) const {
-        if (slices_an_octave_ == 0.0f) return 0;
-        const float slice = std::floor(std::log2(distance * inverse_near_) * slices_an_octave_);
-        return static_cast<std::uint32_t>(std::clamp(slice, -middle, middle) + middle);
+    /// The slices of positive distances; no_cache where one is infinite.
+    void of(const float* distance, std::size_t count, std::uint32_t* slice) const {
+        slice_depths(distance, count, inverse_near_, slices_an_octave_, slice);
     }
 
   private:
-    static constexpr float middle = 1 << 20;
     float inverse_near_, slices_an_octave_;
 };
 

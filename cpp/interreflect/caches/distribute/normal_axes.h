@@ -18,11 +18,8 @@ class NormalAxes {
     NormalAxes(int bins, float smoothing, float exponent);
 
     int count() const { return bins_ * bins_; }
-    int bin_of(const vec3& normal) const {
-        const vec2 at = octahedral_square(normal) * static_cast<float>(bins_);
-        return std::min(static_cast<int>(at.x), bins_ - 1) + bins_ * std::min(static_cast<int>(at.y), bins_ - 1);
-    }
-    /// The axes of how many normals each bin holds.
+    int bins() const { return bins_; }
+    /// The axes of how many normals each bin (bin_normals) holds.
     std::array<vec3, 3> choose(std::span<const float> histogram) const;
 
   private:

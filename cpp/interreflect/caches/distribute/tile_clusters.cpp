@@ -7,11 +7,9 @@
 
 namespace interreflect {
 
-void TileClusters::start(const Tile& tile) {
+void TileClusters::start() {
     clusters.clear();
-    slot.resize(static_cast<std::size_t>(tile.x1 - tile.x0) * (tile.y1 - tile.y0));
     table_.assign(64, none);
-    last_slot_ = none;
 }
 
 std::uint32_t TileClusters::find(std::uint32_t key) {
@@ -32,13 +30,43 @@ std::uint32_t TileClusters::find(std::uint32_t key) {
     return table_[at];
 }
 
-std::uint32_t TileClusters::add(std::uint32_t key, const vec3& position, const vec3& normal) {
-    if (last_slot_ == none || key != last_key_) last_slot_ = find(key), last_key_ = key;
-    Cluster& cluster = clusters[last_slot_];
-    ++cluster.members;
-    cluster.lower = glm::min(cluster.lower, position), cluster.upper = glm::max(cluster.upper, position);
-    cluster.normal += normal;
-    return last_slot_;
+// Neighbours mostly share their key: runs of one are found and added up at once.
+void TileClusters::group(const GBuffer& gbuffer, const Tile& tile, std::span<const std::uint32_t> key) {
+    start();
+    slot.resize(key.size());
+    std::size_t at = 0;
+    for (int y = tile.y0; y < tile.y1; ++y) {
+        const std::size_t row_end = at + static_cast<std::size_t>(tile.x1 - tile.x0);
+        std::size_t pixel = static_cast<std::size_t>(y) * gbuffer.width + tile.x0;
+        while (at < row_end) {
+            const std::uint32_t shared = key[at], number = shared == none ? none : find(shared);
+            vec3 lower(std::numeric_limits<float>::infinity()), upper(-lower), normal(0);
+            const std::size_t begin = at;
+            for (; at < row_end && key[at] == shared; ++at, ++pixel) {
+                slot[at] = number;
+                const vec3& position = gbuffer.position[pixel];
+                lower = glm::min(lower, position), upper = glm::max(upper, position);
+                normal += gbuffer.normal[pixel];
+            }
+            if (number == none) continue;
+            Cluster& cluster = clusters[number];
+            cluster.members += static_cast<std::uint32_t>(at - begin);
+            cluster.lower = glm::min(cluster.lower, lower), cluster.upper = glm::max(cluster.upper, upper);
+            cluster.normal += normal;
+        }
+    }
+    sort();
+}
+
+std::size_t TileClusters::count(std::span<const std::uint32_t> key) {
+    start();
+    std::uint32_t last = none;
+    for (const std::uint32_t one : key) {
+        if (one == last) continue;
+        if (one != none) find(one);
+        last = one;
+    }
+    return clusters.size();
 }
 
 void TileClusters::sort() {
@@ -58,29 +86,27 @@ void TileClusters::sort() {
 }
 
 void TileClusters::choose_pixels(const GBuffer& gbuffer, const Tile& tile) {
-    struct Line {
-        vec3 centre, normal;
-        float inverse_extent;
-    };
-    std::vector<Line> lines;
-    lines.reserve(clusters.size());
-    for (const auto& cluster : clusters) {
+    if (clusters.empty()) return;
+    lines_.reset(clusters.size());
+    for (std::size_t i = 0; i < clusters.size(); ++i) {
+        const Cluster& cluster = clusters[i];
         const float extent = glm::length(cluster.upper - cluster.lower), length = glm::length(cluster.normal);
-        lines.push_back({0.5f * (cluster.lower + cluster.upper), length > 0.0f ? cluster.normal / length : vec3(0),
-                         extent > 0.0f ? 1.0f / extent : 0.0f});
+        lines_.set(i, 0.5f * (cluster.lower + cluster.upper), length > 0.0f ? cluster.normal / length : vec3(0),
+                   extent > 0.0f ? 1.0f / extent : 0.0f);
     }
+    const auto columns = static_cast<std::size_t>(tile.x1 - tile.x0);
+    score_.resize(columns);
     std::size_t at = 0;
-    for (int y = tile.y0; y < tile.y1; ++y)
-        for (int x = tile.x0; x < tile.x1; ++x, ++at) {
-            if (slot[at] == none) continue;
-            const auto pixel = static_cast<std::uint32_t>(y * gbuffer.width + x);
-            const Line& line = lines[slot[at]];
-            const vec3 away = (gbuffer.position[pixel] - line.centre) * line.inverse_extent;
-            const float out = glm::dot(away, line.normal), aside = glm::length(away - line.normal * out);
-            const float score = (glm::dot(gbuffer.normal[pixel], line.normal) + out) / (1.0f + aside);
-            Cluster& cluster = clusters[slot[at]];
-            if (score > cluster.score) cluster.score = score, cluster.pixel = pixel;
+    for (int y = tile.y0; y < tile.y1; ++y) {
+        const std::size_t first = static_cast<std::size_t>(y) * gbuffer.width + tile.x0;
+        score_pixels(gbuffer.position.data() + first, gbuffer.normal.data() + first, slot.data() + at, columns, lines_,
+                     score_.data());
+        for (std::size_t x = 0; x < columns; ++x, ++at) {
+            if (slot[at] == none || score_[x] <= clusters[slot[at]].score) continue;
+            clusters[slot[at]].score = score_[x];
+            clusters[slot[at]].pixel = static_cast<std::uint32_t>(first + x);
         }
+    }
 }
 
 }  // namespace interreflect

@@ -2,8 +2,10 @@
 #pragma once
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <vector>
 
+#include "caches/distribute/tile_kernels.h"
 #include "data/caches.h"
 #include "data/gbuffer.h"
 #include "math/parallel.h"
@@ -26,18 +28,10 @@ class TileClusters {
     std::vector<Cluster> clusters;
     std::vector<std::uint32_t> slot;
 
-    /// Groups the tile's pixels by key(pixel) (which need not be less than any bound), without choosing pixels.
-    template <class Key>
-    void group(const GBuffer& gbuffer, const Tile& tile, const Key& key) {
-        start(tile);
-        std::size_t at = 0;
-        for (int y = tile.y0; y < tile.y1; ++y)
-            for (int x = tile.x0; x < tile.x1; ++x, ++at) {
-                const std::size_t pixel = static_cast<std::size_t>(y) * gbuffer.width + x;
-                slot[at] = gbuffer.hit(pixel) ? add(key(pixel), gbuffer.position[pixel], gbuffer.normal[pixel]) : none;
-            }
-        sort();
-    }
+    /// Groups the tile's pixels by `key`, row by row: any numbers, `none` where nothing was hit; without choosing pixels.
+    void group(const GBuffer& gbuffer, const Tile& tile, std::span<const std::uint32_t> key);
+    /// How many different ones there are besides `none`.
+    std::size_t count(std::span<const std::uint32_t> key);
     /// Of every cluster the pixel with the best score of Rehfeld et al. 2014, 3.2, "Placing Caches":
     ///   (n_p . n_c + (p - c) . n_c / e) / (1 + d / e)
     /// with n_c the mean normal, c the centre of the box about the cluster, and d the distance of p from the line through c along
@@ -46,15 +40,13 @@ class TileClusters {
     void choose_pixels(const GBuffer& gbuffer, const Tile& tile);
 
   private:
-    void start(const Tile& tile);
-    std::uint32_t add(std::uint32_t key, const vec3& position, const vec3& normal);
+    void start();
     std::uint32_t find(std::uint32_t key);
     void sort();
 
-    // Open addressing: slots by a hash of their keys. Neighbours mostly share theirs, so the last one is tried first.
-    std::vector<std::uint32_t> table_;
-    std::uint32_t last_key_ = 0;
-    std::uint32_t last_slot_ = none;
+    std::vector<std::uint32_t> table_;  // open addressing: slots by a hash of their keys
+    ClusterLines lines_;
+    std::vector<float> score_;
 };
 
 }  // namespace interreflect
