@@ -59,6 +59,13 @@ void bind_places(py::module_& m) {
     count("members", &Places::members, "(n,): pixels of its cluster.");
     count("body", &Places::body, "(n,): of the surface; 0 is the world.");
     cls.def_property_readonly(
+        "age",
+        [](const py::object& self) -> py::object {
+            const auto& places = self.cast<const Places&>();
+            return places.track ? py::object(numbers(places.track->age, self)) : py::none();
+        },
+        "(n,): for how many frames each was kept; 0: placed in this one. None but for ReuseCaches.");
+    cls.def_property_readonly(
         "cluster",
         [](const py::object& self) {
             const auto& places = self.cast<const Places&>();

@@ -1898,6 +1898,12 @@ class CachePlaces:
         ...
 
     @property
+    def age(self) -> typing.Any:
+        """
+        (n,): for how many frames each was kept; 0: placed in this one. None but for ReuseCaches.
+        """
+
+    @property
     def body(self) -> numpy.typing.NDArray[numpy.uint32]:
         """
         (n,): of the surface; 0 is the world.
@@ -2054,68 +2060,6 @@ class CacheLight:
         """
         (height, width): sum of the caches' weights; 0 where nothing was hit. Of a pixel without one, that of what lit it.
         """
-class Equidistant:
-    """A cache at the middle pixel of every tile."""
-    description: ClassVar[dict[str, Any]]
-    stages: ClassVar[tuple[str, ...]]
-
-    def __init__(self, *, caches: int=..., tile: int=...) -> None:
-        ...
-
-    def replace(self, *, caches: int=..., tile: int=...) -> Equidistant:
-        ...
-
-    def asdict(self) -> dict[str, Any]:
-        ...
-
-    def __hash__(self) -> int:
-        ...
-
-    def __eq__(self, other: object) -> bool:
-        ...
-
-    @property
-    def caches(self) -> int:
-        ...
-
-    @property
-    def tile(self) -> int:
-        ...
-class CubeFaceClustered:
-    """One cache for the pixels that share tile, depth slice and a cell of a cube's faces."""
-    description: ClassVar[dict[str, Any]]
-    stages: ClassVar[tuple[str, ...]]
-
-    def __init__(self, *, caches: int=..., tile: int=..., slice_depth: float=..., subdivisions: int=...) -> None:
-        ...
-
-    def replace(self, *, caches: int=..., tile: int=..., slice_depth: float=..., subdivisions: int=...) -> CubeFaceClustered:
-        ...
-
-    def asdict(self) -> dict[str, Any]:
-        ...
-
-    def __hash__(self) -> int:
-        ...
-
-    def __eq__(self, other: object) -> bool:
-        ...
-
-    @property
-    def caches(self) -> int:
-        ...
-
-    @property
-    def tile(self) -> int:
-        ...
-
-    @property
-    def slice_depth(self) -> float:
-        ...
-
-    @property
-    def subdivisions(self) -> int:
-        ...
 class Clustered:
     """One cache for the pixels that share tile, depth slice and the nearest of three axes adapted to the tile's normals."""
     description: ClassVar[dict[str, Any]]
@@ -2158,6 +2102,107 @@ class Clustered:
 
     @property
     def exponent(self) -> float:
+        ...
+class CubeFaceClustered:
+    """One cache for the pixels that share tile, depth slice and a cell of a cube's faces."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self, *, caches: int=..., tile: int=..., slice_depth: float=..., subdivisions: int=...) -> None:
+        ...
+
+    def replace(self, *, caches: int=..., tile: int=..., slice_depth: float=..., subdivisions: int=...) -> CubeFaceClustered:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+
+    @property
+    def caches(self) -> int:
+        ...
+
+    @property
+    def tile(self) -> int:
+        ...
+
+    @property
+    def slice_depth(self) -> float:
+        ...
+
+    @property
+    def subdivisions(self) -> int:
+        ...
+class Equidistant:
+    """A cache at the middle pixel of every tile."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self, *, caches: int=..., tile: int=...) -> None:
+        ...
+
+    def replace(self, *, caches: int=..., tile: int=...) -> Equidistant:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+
+    @property
+    def caches(self) -> int:
+        ...
+
+    @property
+    def tile(self) -> int:
+        ...
+class ReuseCaches:
+    """Last frame's caches stay where they are while they are seen; clusters without one get a new one."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self, *, distribute: Any=..., most: int=..., max_distance: float=..., max_angle: float=..., tolerance: float=...) -> None:
+        ...
+
+    def replace(self, *, distribute: Any=..., most: int=..., max_distance: float=..., max_angle: float=..., tolerance: float=...) -> ReuseCaches:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+
+    @property
+    def distribute(self) -> Any:
+        ...
+
+    @property
+    def most(self) -> int:
+        ...
+
+    @property
+    def max_distance(self) -> float:
+        ...
+
+    @property
+    def max_angle(self) -> float:
+        ...
+
+    @property
+    def tolerance(self) -> float:
         ...
 class CachePerPixel:
     """A cache at every pixel."""
@@ -2447,7 +2492,7 @@ def cone_step_rate(repeats: typing.SupportsInt | typing.SupportsIndex) -> float:
     """
     Million steps of cones a second, each two trilinear look-ups in a pyramid of half floats; best of `repeats`.
     """
-def distribute(technique: CachePerPixel | Clustered | CubeFaceClustered | Equidistant, gbuffer: GBuffer, scene: Scene, last: CachePlaces | None=None) -> CachePlaces:
+def distribute(technique: CachePerPixel | Clustered | CubeFaceClustered | Equidistant | ReuseCaches, gbuffer: GBuffer, scene: Scene, last: CachePlaces | None=None) -> CachePlaces:
     """
     Where radiance caches stand.
     """

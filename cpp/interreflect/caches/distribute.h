@@ -3,7 +3,7 @@
 ///   CachePlaces distribute(const Technique&, const GBuffer&, const Scene&, const CachePlaces* last);
 ///
 /// At most one cache a cluster of pixels, at the pixel of it that stands best for the others (place.h). `last` is what the same
-/// technique returned for the frame before; null: there is none, or it does not matter. Exact counterpart: CachePerPixel.
+/// technique returned for the frame before (ReuseCaches looks at it); null: there is none. Exact counterpart: CachePerPixel.
 #pragma once
 #include <variant>
 
@@ -11,7 +11,8 @@
 #include "caches/distribute/clustered.h"
 #include "caches/distribute/cube_face_clustered.h"
 #include "caches/distribute/equidistant.h"
+#include "caches/distribute/reuse_caches.h"
 
 namespace interreflect {
-using Distribute = std::variant<CachePerPixel, Clustered, CubeFaceClustered, Equidistant>;
+using Distribute = std::variant<CachePerPixel, Clustered, CubeFaceClustered, Equidistant, ReuseCaches>;
 }

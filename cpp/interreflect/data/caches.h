@@ -3,9 +3,11 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "data/buffer.h"
+#include "data/camera.h"
 #include "data/counts.h"
 #include "math/vectors.h"
 
@@ -30,12 +32,21 @@ struct CachePlaces {
     Buffer<std::uint32_t> members;     // pixels of its cluster
     std::vector<std::uint32_t> first;  // caches of tile t: first[t] up to first[t + 1]
     Buffer<std::uint32_t> cluster;     // of each pixel: the cache of its cluster; no_cache where nothing was hit, or none stands
+    /// By what the next frame finds them again.
+    struct Track {
+        Camera camera;
+        std::vector<mat4x3> poses;       // of every instance of the scene: world_from_local
+        Buffer<std::uint32_t> instance;  // that each stands on
+        Buffer<std::uint32_t> age;       // frames that it has been kept; 0: placed in this one
+        std::size_t bytes() const { return poses.size() * sizeof(mat4x3) + instance.bytes() + age.bytes(); }
+    };
+    std::optional<Track> track;  // of ReuseCaches alone
     Counts counts;
 
     std::size_t size() const { return position.size(); }
     std::size_t bytes() const {
         return size() * (3 * sizeof(vec3) + sizeof(vec2) + 2 * sizeof(float) + 3 * sizeof(std::uint32_t)) +
-               first.size() * sizeof(std::uint32_t) + cluster.bytes();
+               first.size() * sizeof(std::uint32_t) + cluster.bytes() + (track ? track->bytes() : 0);
     }
 };
 

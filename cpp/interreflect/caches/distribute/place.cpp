@@ -14,10 +14,10 @@ float tile_angle(const GBuffer& gbuffer, int tile) {
     return static_cast<float>(tile) * CameraRays(gbuffer.camera, gbuffer.width, gbuffer.height).pixel_angle();
 }
 
-float tile_footprint(const GBuffer& gbuffer, std::size_t pixel, float tile_angle) {
-    const vec3 away = gbuffer.position[pixel] - gbuffer.camera.position;
+float tile_footprint(const vec3& eye, const vec3& position, const vec3& geometric_normal, float tile_angle) {
+    const vec3 away = position - eye;
     const float distance = glm::length(away);
-    const float cosine = distance > 0.0f ? std::fabs(glm::dot(away, gbuffer.geometric_normal[pixel])) / distance : 1.0f;
+    const float cosine = distance > 0.0f ? std::fabs(glm::dot(away, geometric_normal)) / distance : 1.0f;
     return distance * tile_angle / std::max(cosine, least_cosine);
 }
 
@@ -45,7 +45,7 @@ void place_caches(const GBuffer& gbuffer, std::span<const std::uint32_t> pixels,
             places.normal[i] = gbuffer.normal[at];
             places.geometric_normal[i] = gbuffer.geometric_normal[at];
             places.screen[i] = vec2(static_cast<float>(at % gbuffer.width), static_cast<float>(at / gbuffer.width)) + 0.5f;
-            places.footprint[i] = tile_footprint(gbuffer, at, angle);
+            places.footprint[i] = tile_footprint(gbuffer.camera.position, gbuffer.position[at], gbuffer.geometric_normal[at], angle);
             places.offset[i] = gbuffer.offset[at];
             places.body[i] = gbuffer.body[at];
             places.pixel[i] = at;

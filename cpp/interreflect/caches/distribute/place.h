@@ -7,8 +7,8 @@
 
 namespace interreflect {
 
-/// How long a tile is on the surface that a pixel sees, along the way it is slanted, scene units. Slants end at a cosine of .1.
-float tile_footprint(const GBuffer& gbuffer, std::size_t pixel, float tile_angle);
+/// How long a tile is on a surface that an eye sees, along the way it is slanted, scene units. Slants end at a cosine of .1.
+float tile_footprint(const vec3& eye, const vec3& position, const vec3& geometric_normal, float tile_angle);
 
 /// The angle of a tile, radians.
 float tile_angle(const GBuffer& gbuffer, int tile);
