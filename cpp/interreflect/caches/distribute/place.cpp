@@ -45,7 +45,8 @@ void place_caches(const GBuffer& gbuffer, std::span<const std::uint32_t> pixels,
             places.normal[i] = gbuffer.normal[at];
             places.geometric_normal[i] = gbuffer.geometric_normal[at];
             places.screen[i] = vec2(static_cast<float>(at % gbuffer.width), static_cast<float>(at / gbuffer.width)) + 0.5f;
-            places.footprint[i] = tile_footprint(gbuffer.camera.position, gbuffer.position[at], gbuffer.geometric_normal[at], angle);
+            places.footprint[i] =
+                tile_footprint(gbuffer.camera.position, gbuffer.position[at], gbuffer.geometric_normal[at], angle);
             places.offset[i] = gbuffer.offset[at];
             places.body[i] = gbuffer.body[at];
             places.pixel[i] = at;

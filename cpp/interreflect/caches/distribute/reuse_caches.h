@@ -11,9 +11,10 @@ namespace interreflect {
 /// Last frame's caches stay where they are while they are seen [Rehfeld et al. 2014, 6; after Laine et al. 2007]; they are sorted
 /// into this frame's clusters [Wang et al. 2009], and clusters that get none have a new one placed.
 ///
-/// A cache rides on its instance. It is valid where the pixel that it projects to sees its surface: the same body, not far off the
-/// plane through the cache, with a similar normal. Of several in a cluster those that lasted longest stay. Only places are kept;
-/// what arrives there is gathered anew. Tiles keep the last frame's size while their clusters are about as many as are wanted.
+/// A cache rides on its instance. It is valid where the pixel that it projects to sees its surface: the same body, not far off
+/// the plane through the cache, with a similar normal. Of several in a cluster those that lasted longest stay. Only places are
+/// kept; what arrives there is gathered anew. Tiles keep the last frame's size while their clusters are about as many as are
+/// wanted.
 struct ReuseCaches {
     std::variant<Clustered, CubeFaceClustered, Equidistant> distribute;
     int most = 1;
@@ -30,8 +31,8 @@ struct ReuseCaches {
         Param{"max_distance", &ReuseCaches::max_distance,
               "how far off a cache's plane the surface seen there may lie, in widths of a tile at its distance", Unit::tiles,
               between(0, 16)},
-        Param{"max_angle", &ReuseCaches::max_angle, "largest angle between a cache's normal and the one seen there", Unit::degrees,
-              between(0, 90)},
+        Param{"max_angle", &ReuseCaches::max_angle, "largest angle between a cache's normal and the one seen there",
+              Unit::degrees, between(0, 90)},
         Param{"tolerance", &ReuseCaches::tolerance,
               "by which share clusters may be more, or fewer, than the caches that are wanted, before tiles get another size",
               Unit::none, between(0, 16)});
