@@ -45,11 +45,15 @@ struct Tile {
     std::size_t index;
 };
 
+inline std::size_t tile_count(int width, int height, int size) {
+    return static_cast<std::size_t>((width + size - 1) / size) * static_cast<std::size_t>((height + size - 1) / size);
+}
+
 /// Calls body(Tile) for every tile of a picture, `size` pixels on a side (fewer at the right and lower border).
 template <class Body>
 void parallel_tiles(int width, int height, int size, const Body& body) {
-    const int columns = (width + size - 1) / size, rows = (height + size - 1) / size;
-    parallel_pieces(static_cast<std::size_t>(columns) * rows, [&](std::size_t index) {
+    const int columns = (width + size - 1) / size;
+    parallel_pieces(tile_count(width, height, size), [&](std::size_t index) {
         const int x = static_cast<int>(index % columns) * size, y = static_cast<int>(index / columns) * size;
         body(Tile{x, y, std::min(x + size, width), std::min(y + size, height), index});
     });

@@ -20,25 +20,17 @@ vec4 read_map(const std::uint16_t* texels, int n, const vec2& square) {
                     glm::mix(read_texel(corner + below), read_texel(corner + below + right), f.x), f.y);
 }
 
-CacheReader::Place CacheReader::place(const Buffer<std::uint16_t>& filled, const ConvolvedCaches::Layer& layer,
-                                      std::size_t cache) const {
-    const auto table = static_cast<std::size_t>(caches_.table_size) * static_cast<std::size_t>(caches_.table_size);
-    return {filled.data() + 4 * cache * caches_.filled->texels_each(),
-            layer.chain.data() + 4 * cache * static_cast<std::size_t>(caches_.chain_texels),
-            layer.table.data() + 4 * cache * table};
+namespace {
+vec4 at_level(const LayerMaps& maps, int level, const vec2& square) {
+    return read_map(maps.level(level), maps.caches.level_sizes[static_cast<std::size_t>(level)], square);
 }
-
-vec4 CacheReader::at_level(const Place& place, int level, const vec2& square) const {
-    const auto i = static_cast<std::size_t>(level);
-    const std::uint16_t* texels = level == 0 ? place.filled : place.chain + 4 * caches_.level_begins[i];
-    return read_map(texels, caches_.level_sizes[i], square);
-}
+}  // namespace
 
 CacheSum CacheReader::read(std::size_t cache, const PixelViews::View& view) const {
     if (caches_.samples > 0) return sample(cache, view);
     const FilledCaches& filled = *caches_.filled;
     const Frame frame(filled.places->normal[cache]);
-    const Place light = place(filled.texels, caches_.light, cache), sky = place(filled.sky, caches_.sky, cache);
+    const LayerMaps light(caches_, filled.texels, caches_.light, cache), sky(caches_, filled.sky, caches_.sky, cache);
     const bool image = !filled.sky.empty();
     CacheSum sum;
     sum.weight = 1.0f;
@@ -67,7 +59,7 @@ struct MeanOfSamples {
 CacheSum CacheReader::sample(std::size_t cache, const PixelViews::View& view) const {
     const FilledCaches& filled = *caches_.filled;
     const Frame frame(filled.places->normal[cache]), own(view.normal);
-    const Place light = place(filled.texels, caches_.light, cache), sky = place(filled.sky, caches_.sky, cache);
+    const LayerMaps light(caches_, filled.texels, caches_.light, cache), sky(caches_, filled.sky, caches_.sky, cache);
     const auto add = [&](const vec3& direction, float weight, MeanOfSamples& to) {
         const vec3 local = frame.to_local(direction);
         if (local.z <= 0.0f || weight <= 0.0f) return;

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "math/parallel.h"
-
 namespace interreflect {
 
 CacheLight empty_cache_light(const GBuffer& gbuffer) {
@@ -12,13 +10,18 @@ CacheLight empty_cache_light(const GBuffer& gbuffer) {
     light.gathered = {gbuffer.width, gbuffer.height, Buffer<vec3>(pixels), Buffer<vec3>(pixels), Buffer<float>(pixels), {}};
     light.glossy = {gbuffer.width, gbuffer.height, Buffer<vec3>(pixels), Buffer<vec3>(pixels), {}};
     light.weight = Buffer<float>(pixels);
-    parallel_blocks(pixels, 16384, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            light.gathered.irradiance[i] = light.gathered.sky[i] = light.glossy.radiance[i] = light.glossy.sky[i] = vec3(0);
-            light.gathered.occlusion[i] = light.weight[i] = 0.0f;
-        }
-    });
     return light;
+}
+
+void clear_light(const Tile& tile, CacheLight& light) {
+    const auto row = static_cast<std::size_t>(tile.x1 - tile.x0);
+    for (int y = tile.y0; y < tile.y1; ++y) {
+        const std::size_t i = static_cast<std::size_t>(y) * light.gathered.width + tile.x0;
+        for (auto* vectors : {&light.gathered.irradiance, &light.gathered.sky, &light.glossy.radiance, &light.glossy.sky})
+            std::fill_n(vectors->data() + i, row, vec3(0));
+        std::fill_n(light.gathered.occlusion.data() + i, row, 0.0f);
+        std::fill_n(light.weight.data() + i, row, 0.0f);
+    }
 }
 
 void finish_pixel(const ConvolvedCaches& caches, const PixelViews::View& view, const CacheSum& sum, CacheLight& light) {
@@ -33,6 +36,15 @@ void finish_pixel(const ConvolvedCaches& caches, const PixelViews::View& view, c
     if (!view.glossy) return;
     light.glossy.radiance[i] = vec3(sum.glossy) * view.albedo * unit;
     light.glossy.sky[i] = view.albedo * (image ? sum.glossy_sky * unit : filled.sky_radiance * (sum.glossy.w * mean));
+}
+
+void finish_pixels(const ConvolvedCaches& caches, const PixelViews& views, const CacheSums& sums, CacheLight& light,
+                   Served& served) {
+    for (int i = 0; i < views.count; ++i)
+        if (sums.weight[i] > 0.0f)
+            finish_pixel(caches, views.view(i), sums.at(i), light), ++served.covered;
+        else
+            served.uncovered.push_back(views.pixel[i]);
 }
 
 }  // namespace interreflect

@@ -3,16 +3,15 @@
 #include <algorithm>
 #include <vector>
 
-#include "caches/interpolate/cache_reader.h"
 #include "caches/interpolate/finish.h"
+#include "caches/interpolate/sum_caches.h"
 #include "caches/interpolate/uncovered.h"
 #include "math/parallel.h"
 
 namespace interreflect {
 namespace {
 
-constexpr int block_size = 16;
-static_assert(block_size * block_size <= PixelViews::capacity);
+constexpr int block_size = PixelViews::block_size;
 
 /// The caches that are seen within `radius` pixels of a block's pixels, in ascending order.
 void caches_near(const CachePlaces& places, const Tile& block, float radius, std::vector<std::uint32_t>& near) {
@@ -40,35 +39,21 @@ CacheLight interpolate(const Gather& technique, const ConvolvedCaches* caches, c
     const CachePlaces& places = *caches->filled->places;
     const CacheWeights weights(technique, places, false);
     const PixelViewer viewer(gbuffer, scene, *caches);
-    const CacheReader reader(*caches, gbuffer, scene);
-    const auto columns = static_cast<std::size_t>((gbuffer.width + block_size - 1) / block_size);
-    std::vector<std::uint64_t> evaluations(columns * static_cast<std::size_t>((gbuffer.height + block_size - 1) / block_size));
+    const CacheSummer summer(*caches, weights, gbuffer, scene);
+    std::vector<Served> served(tile_count(gbuffer.width, gbuffer.height, block_size));
     parallel_tiles(gbuffer.width, gbuffer.height, block_size, [&](const Tile& block) {
         thread_local PixelViews views;
-        thread_local std::vector<std::uint32_t> near, pixels;
-        pixels.clear();
-        for (int y = block.y0; y < block.y1; ++y)
-            for (int x = block.x0; x < block.x1; ++x) {
-                const auto pixel = static_cast<std::uint32_t>(y * gbuffer.width + x);
-                if (gbuffer.hit(pixel)) pixels.push_back(pixel);
-            }
-        if (pixels.empty()) return;
-        viewer.look(pixels, views);
+        thread_local CacheSums sums;
+        thread_local std::vector<std::uint32_t> near;
+        clear_light(block, light);
+        viewer.look(block, views);
+        if (views.count == 0) return;
+        sums.clear(views.count);
         caches_near(places, block, weights.screen_radius(), near);
-        for (int i = 0; i < views.count; ++i) {
-            const auto& view = views.view[i];
-            CacheSum sum;
-            for (const std::uint32_t cache : near) {
-                const float weight = weights.weight(cache, view);
-                if (weight <= 0.0f) continue;
-                sum.add(reader.read(cache, view), weight);
-                ++evaluations[block.index];
-            }
-            if (sum.weight > 0.0f) finish_pixel(*caches, view, sum, light);
-        }
+        for (const std::uint32_t cache : near) served[block.index].evaluations += summer.add(cache, views, sums);
+        finish_pixels(*caches, views, sums, light, served[block.index]);
     });
-    for (const auto one : evaluations) light.counts.cache_evaluations += one;
-    light_uncovered(technique, *caches, gbuffer, scene, own, light);
+    light_uncovered(technique, *caches, gbuffer, scene, own, served, light);
     return light;
 }
 

@@ -36,7 +36,7 @@ Counts light_by_own_caches(const OwnCaches& own, std::span<const std::uint32_t> 
             thread_local PixelViews views;
             viewer.look(some.subspan(first, end - first), views);
             for (std::size_t i = first; i < end; ++i) {
-                const auto& view = views.view[i - first];
+                const PixelViews::View view = views.view(static_cast<int>(i - first));
                 finish_pixel(caches, view, reader.read(i, view), light);
             }
         });

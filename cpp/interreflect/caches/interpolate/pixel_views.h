@@ -5,24 +5,44 @@
 #include "data/caches.h"
 #include "data/gbuffer.h"
 #include "data/scene.h"
+#include "math/parallel.h"
 #include "voxels/glossy/reflections.h"
 
 namespace interreflect {
 
+/// Parallel arrays. Beyond `count`, up to a whole vector of lanes, stand pixels that no cache reaches.
 struct PixelViews {
-    static constexpr int capacity = Reflections::capacity;
+    static constexpr int capacity = Reflections::capacity, block_size = 16, most_lanes = 16;
+    static constexpr float no_lobe = -2.0f;  // further than a level below the first
+    static_assert(block_size * block_size <= capacity && capacity % most_lanes == 0);
 
+    /// One of them.
     struct View {
-        std::uint32_t pixel = no_cache;
-        vec3 position{0}, normal{0};
-        vec2 screen{0};       // pixels from the upper left corner
-        bool glossy = false;  // whether there is a lobe; what follows is its
-        vec3 direction{0};    // unit
-        float level = 0.0f;   // of the maps, between the first and the last
-        vec3 albedo{0};       // directional albedo at this view
+        std::uint32_t pixel;
+        vec3 position, normal;
+        vec2 screen;  // pixels from the upper left corner
+        bool glossy;  // whether there is a lobe; what follows is its
+        vec3 direction, albedo;
+        float level;
     };
+    View view(int i) const {
+        return {pixel[i],
+                {position[0][i], position[1][i], position[2][i]},
+                {normal[0][i], normal[1][i], normal[2][i]},
+                {screen[0][i], screen[1][i]},
+                level[i] >= 0.0f,
+                {direction[0][i], direction[1][i], direction[2][i]},
+                albedo[i],
+                level[i]};
+    }
+
     int count = 0;
-    View view[capacity];
+    std::uint32_t pixel[capacity];
+    alignas(64) float position[3][capacity], normal[3][capacity], screen[2][capacity];
+    alignas(64) float direction[3][capacity];  // unit
+    alignas(64) float level[capacity];         // of the maps, between the first and the last; no_lobe
+    vec3 albedo[capacity];                     // directional albedo at this view
+    int finest = 0, coarsest = -1;             // levels that lobes are read from
 };
 
 /// The way from pixels to what they look up, in maps of one kind.
@@ -31,9 +51,13 @@ class PixelViewer {
     PixelViewer(const GBuffer& gbuffer, const Scene& scene, const ConvolvedCaches& caches);
     /// Up to PixelViews::capacity pixels that see a surface.
     void look(std::span<const std::uint32_t> pixels, PixelViews& views) const;
+    /// Those of a block of PixelViews::block_size, 4 x 4 at a time: caches tend to reach all lanes of a vector or none.
+    void look(const Tile& block, PixelViews& views) const;
 
   private:
-    float level_of(std::size_t pixel, float half_angle) const;
+    struct Width;
+    float level_of(std::size_t pixel, float half_angle, Width& last) const;
+    float level_of(float cosine) const;
 
     const GBuffer& gbuffer_;
     const Scene& scene_;

@@ -4,15 +4,16 @@
 #include <cmath>
 #include <vector>
 
-#include "caches/interpolate/cache_reader.h"
 #include "caches/interpolate/finish.h"
+#include "caches/interpolate/sum_caches.h"
 #include "caches/interpolate/uncovered.h"
 #include "math/parallel.h"
 
 namespace interreflect {
 namespace {
 
-constexpr int bin_size = 64;  // pixels on a side of what one thread adds to at a time
+constexpr int block_size = PixelViews::block_size;
+constexpr int bin_size = 4 * block_size;  // pixels on a side of what one thread adds to at a time
 
 /// Pixels that a sphere about a point of the picture reaches from where its centre is seen, at most; infinite where it reaches
 /// round the eye. A sphere of angular radius b whose centre lies at an angle a off the axis ends at tan(a + b).
@@ -30,47 +31,35 @@ struct Splats {
     const CachePlaces& places;
     std::vector<float> reach;  // pixels
 
-    /// The bin's pixels that a cache may reach: an empty tile where there are none.
-    Tile reached(std::size_t cache, const Tile& bin) const {
-        const vec2 at = places.screen[cache];
-        const float r = reach[cache];
-        const auto low = [&](float centre, int least, int most) {
-            return static_cast<int>(std::clamp(std::floor(centre - r), static_cast<float>(least), static_cast<float>(most)));
-        };
-        const auto high = [&](float centre, int least, int most) {
-            return static_cast<int>(std::clamp(std::ceil(centre + r), static_cast<float>(least), static_cast<float>(most)));
-        };
-        return {low(at.x, bin.x0, bin.x1), low(at.y, bin.y0, bin.y1), high(at.x, bin.x0, bin.x1), high(at.y, bin.y0, bin.y1), 0};
+    bool reach_into(std::size_t cache, const Tile& tile) const {
+        const vec2 lower(tile.x0, tile.y0), upper(tile.x1, tile.y1), at = places.screen[cache];
+        const vec2 aside = at - glm::clamp(at, lower, upper);
+        return glm::dot(aside, aside) < reach[cache] * reach[cache];
     }
 };
 
-/// The pixels of a bin as the splats meet them.
-struct Bin {
-    std::vector<PixelViews::View> view;  // row by row; `pixel` is no_cache where nothing is seen
-    std::vector<CacheSum> sum;
+/// Pixels as the splats meet them, and what they have added.
+struct Block {
+    Tile tile;
+    PixelViews views;
+    CacheSums sums;
+};
 
-    void look(const PixelViewer& viewer, const GBuffer& gbuffer, const Tile& bin) {
-        thread_local PixelViews some;
-        view.assign(static_cast<std::size_t>(bin_size) * bin_size, {});
-        sum.assign(view.size(), {});
-        std::vector<std::uint32_t> pixels;
-        for (int y = bin.y0; y < bin.y1; ++y)
-            for (int x = bin.x0; x < bin.x1; ++x)
-                if (gbuffer.hit(static_cast<std::size_t>(y) * gbuffer.width + x))
-                    pixels.push_back(static_cast<std::uint32_t>(y * gbuffer.width + x));
-        for (std::size_t first = 0; first < pixels.size(); first += PixelViews::capacity) {
-            const auto rest = std::min<std::size_t>(pixels.size() - first, PixelViews::capacity);
-            viewer.look(std::span<const std::uint32_t>(pixels).subspan(first, rest), some);
-            for (int i = 0; i < some.count; ++i) {
-                const auto pixel = static_cast<int>(some.view[i].pixel);
-                view[at(bin, pixel % gbuffer.width, pixel / gbuffer.width)] = some.view[i];
-            }
+/// Those of a bin that see something.
+std::size_t look(const PixelViewer& viewer, const Tile& bin, std::vector<Block>& blocks, CacheLight& light) {
+    std::size_t count = 0;
+    for (int y = bin.y0; y < bin.y1; y += block_size)
+        for (int x = bin.x0; x < bin.x1; x += block_size) {
+            if (count == blocks.size()) blocks.emplace_back();
+            Block& block = blocks[count];
+            block.tile = {x, y, std::min(x + block_size, bin.x1), std::min(y + block_size, bin.y1), 0};
+            clear_light(block.tile, light);
+            viewer.look(block.tile, block.views);
+            block.sums.clear(block.views.count);
+            if (block.views.count > 0) ++count;
         }
-    }
-    static std::size_t at(const Tile& bin, int x, int y) {
-        return static_cast<std::size_t>(y - bin.y0) * bin_size + static_cast<std::size_t>(x - bin.x0);
-    }
-};
+    return count;
+}
 
 }  // namespace
 
@@ -80,33 +69,24 @@ CacheLight interpolate(const Splat& technique, const ConvolvedCaches* caches, co
     const CachePlaces& places = *caches->filled->places;
     const CacheWeights weights(technique, places, technique.weight == "world");
     const PixelViewer viewer(gbuffer, scene, *caches);
-    const CacheReader reader(*caches, gbuffer, scene);
+    const CacheSummer summer(*caches, weights, gbuffer, scene);
     const CameraRays rays(gbuffer.camera, gbuffer.width, gbuffer.height);
     Splats splats{places, std::vector<float>(places.size())};
     for (std::size_t i = 0; i < places.size(); ++i)
         splats.reach[i] = std::min(weights.screen_radius(), reach_on_screen(rays, places.position[i], weights.world_radius(i)));
-    const auto columns = static_cast<std::size_t>((gbuffer.width + bin_size - 1) / bin_size);
-    std::vector<std::uint64_t> evaluations(columns * static_cast<std::size_t>((gbuffer.height + bin_size - 1) / bin_size));
+    std::vector<Served> served(tile_count(gbuffer.width, gbuffer.height, bin_size));
     parallel_tiles(gbuffer.width, gbuffer.height, bin_size, [&](const Tile& bin) {
-        thread_local Bin of;
-        of.look(viewer, gbuffer, bin);
+        thread_local std::vector<Block> blocks;
+        const std::size_t count = look(viewer, bin, blocks, light);
         for (std::size_t cache = 0; cache < places.size(); ++cache) {
-            const Tile reached = splats.reached(cache, bin);
-            for (int y = reached.y0; y < reached.y1; ++y)
-                for (int x = reached.x0; x < reached.x1; ++x) {
-                    const std::size_t i = Bin::at(bin, x, y);
-                    if (of.view[i].pixel == no_cache) continue;
-                    const float weight = weights.weight(cache, of.view[i]);
-                    if (weight <= 0.0f) continue;
-                    of.sum[i].add(reader.read(cache, of.view[i]), weight);
-                    ++evaluations[bin.index];
-                }
+            if (!splats.reach_into(cache, bin)) continue;
+            for (std::size_t i = 0; i < count; ++i)
+                if (splats.reach_into(cache, blocks[i].tile))
+                    served[bin.index].evaluations += summer.add(cache, blocks[i].views, blocks[i].sums);
         }
-        for (std::size_t i = 0; i < of.view.size(); ++i)
-            if (of.sum[i].weight > 0.0f) finish_pixel(*caches, of.view[i], of.sum[i], light);
+        for (std::size_t i = 0; i < count; ++i) finish_pixels(*caches, blocks[i].views, blocks[i].sums, light, served[bin.index]);
     });
-    for (const auto one : evaluations) light.counts.cache_evaluations += one;
-    light_uncovered(technique, *caches, gbuffer, scene, own, light);
+    light_uncovered(technique, *caches, gbuffer, scene, own, served, light);
     return light;
 }
 

@@ -39,16 +39,14 @@ std::uint32_t nearest_cache(const CachePlaces& places, const PixelViews::View& v
 }  // namespace
 
 void light_uncovered(const WeightKnobs& knobs, const ConvolvedCaches& caches, const GBuffer& gbuffer, const Scene& scene,
-                     const OwnCaches& own, CacheLight& light) {
+                     const OwnCaches& own, std::span<const Served> served, CacheLight& light) {
     std::vector<std::uint32_t> pixels;
-    std::uint64_t hit = 0;
-    for (std::size_t i = 0; i < gbuffer.pixels(); ++i) {
-        if (!gbuffer.hit(i)) continue;
-        ++hit;
-        if (!(light.weight[i] > 0.0f)) pixels.push_back(static_cast<std::uint32_t>(i));
+    for (const Served& block : served) {
+        pixels.insert(pixels.end(), block.uncovered.begin(), block.uncovered.end());
+        light.counts.covered_pixels += block.covered;
+        light.counts.cache_evaluations += block.evaluations;
     }
     light.counts.uncovered_pixels = pixels.size();
-    light.counts.covered_pixels = hit - pixels.size();
     if (knobs.uncovered == "nearest") {
         const PixelViewer viewer(gbuffer, scene, caches);
         const CacheReader reader(caches, gbuffer, scene);
@@ -56,9 +54,10 @@ void light_uncovered(const WeightKnobs& knobs, const ConvolvedCaches& caches, co
             thread_local PixelViews views;
             viewer.look(std::span<const std::uint32_t>(pixels).subspan(first, end - first), views);
             for (int i = 0; i < views.count; ++i) {
-                const std::uint32_t cache = nearest_cache(*caches.filled->places, views.view[i]);
+                const PixelViews::View view = views.view(i);
+                const std::uint32_t cache = nearest_cache(*caches.filled->places, view);
                 if (cache == no_cache) continue;
-                finish_pixel(caches, views.view[i], reader.read(cache, views.view[i]), light);
+                finish_pixel(caches, view, reader.read(cache, view), light);
                 pixels[first + static_cast<std::size_t>(i)] = no_cache;
             }
         });
