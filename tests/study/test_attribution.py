@@ -92,6 +92,8 @@ def test_every_stage_knows_how_exact_it_is():
     assert counterpart_of("march", ir.DiffuseCones(), 32) == (REPLACED, ir.TracedRays(samples=32))
     assert counterpart_of("shadow", ir.TracedShadows(samples=4), 32) == (MORE_SAMPLES, ir.TracedShadows(samples=32))
     assert counterpart_of("shadow", ir.TracedShadows(samples=64), 32) == (EXACT, None)
+    assert counterpart_of("fill", ir.ConeFill(resolution=4), 32) == (REPLACED, ir.TracedFill(samples=1))  # 256 rays a map
+    assert counterpart_of("fill", ir.TracedFill(resolution=4, samples=1), 32) == (MORE_SAMPLES, ir.TracedFill(resolution=4, samples=2))
     assert counterpart_of("share", ir.EveryPixel(), 32) == (EXACT, None)
     assert counterpart_of("glossy", None, 32) == (LEFT_OUT, ir.TracedRays(samples=32))
     assert counterpart_of("prefilter", ir.SurfaceCoverage(), 32) == (NO_COUNTERPART, None)

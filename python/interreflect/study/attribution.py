@@ -181,8 +181,8 @@ def counterpart_of(stage: str, technique: Any, samples: int) -> tuple[str, Any]:
         return LEFT_OUT, _with_samples(exact(), samples)
     if not isinstance(technique, exact):
         return REPLACED, _with_samples(exact(), samples)
-    few = getattr(technique, "samples", None)
-    return (MORE_SAMPLES, technique.replace(samples=samples)) if isinstance(few, int) and few < samples else (EXACT, None)
+    more = _with_samples(technique, samples)
+    return (MORE_SAMPLES, more) if getattr(more, "samples", 0) > getattr(technique, "samples", 0) else (EXACT, None)
 
 
 def own_counterpart(method: Method, stage: str, samples: int) -> tuple[str, Method | None]:
@@ -194,7 +194,11 @@ def own_counterpart(method: Method, stage: str, samples: int) -> tuple[str, Meth
 
 
 def _with_samples(technique: Any, samples: int) -> Any:
-    return technique.replace(samples=samples) if isinstance(getattr(technique, "samples", None), int) else technique
+    """With as many samples an estimate; one that fills the texels of a map spreads them over the map."""
+    if not isinstance(getattr(technique, "samples", None), int):
+        return technique
+    texels = getattr(technique, "resolution", 1) ** 2
+    return technique.replace(samples=-(-samples // texels))
 
 
 def _fields(method: Method) -> dict[str, Any]:

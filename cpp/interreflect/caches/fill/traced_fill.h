@@ -13,7 +13,7 @@ namespace interreflect {
 /// there. With one sample a texel it shows what pre-filtered voxels spare: bright parts that no ray meets.
 struct TracedFill {
     int resolution = 16;
-    int samples = 64;
+    int samples = 16;
 
     bool operator==(const TracedFill&) const = default;
     static constexpr auto description = describe(
