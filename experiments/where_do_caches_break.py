@@ -33,11 +33,11 @@ placed = {
     name: base.replace(distribute=distribute)
     for name, distribute in {
         "Clustered": base.distribute,
+        "Clustered, cubes": ir.Clustered(caches=0, tile=TILE, slice_depth=1),
         "Clustered, not by depth": ir.Clustered(caches=0, tile=TILE, slice_depth=0),
         "CubeFaceClustered": ir.CubeFaceClustered(caches=0, tile=TILE),
         "Equidistant": ir.Equidistant(caches=0, tile=TILE),
         "Clustered, tiles of 16": ir.Clustered(caches=0, tile=2 * TILE),
-        "CachePerPixel": ir.CachePerPixel(),
     }.items()
 }
 
@@ -45,11 +45,11 @@ read = {
     "Gather": base,
     "Gather, one tile": base.replace({"interpolate.radius": 1.0}),
     "Gather, half a tile": base.replace({"interpolate.radius": 0.5}),
-    "Gather, near in space": base.replace({"interpolate.world_radius": 0.5}),
+    "Gather, half a tile in space": base.replace({"interpolate.world_radius": 0.5}),
+    "Gather, two tiles in space": base.replace({"interpolate.world_radius": 2.0}),
     "Gather, 30 degrees": base.replace({"interpolate.max_angle": 30.0}),
     "Splat": base.replace(interpolate=ir.Splat()),
     "Splat, minimum": base.replace(interpolate=ir.Splat(weight="minimum")),
-    "Evaluated": base.replace(interpolate=ir.Evaluated()),
 }
 
 held = {
