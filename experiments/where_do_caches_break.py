@@ -37,6 +37,7 @@ placed = {
         "Clustered, not by depth": ir.Clustered(caches=0, tile=TILE, slice_depth=0),
         "CubeFaceClustered": ir.CubeFaceClustered(caches=0, tile=TILE),
         "Equidistant": ir.Equidistant(caches=0, tile=TILE),
+        "ReuseCaches": ir.ReuseCaches(distribute=base.distribute),
         "Clustered, tiles of 16": ir.Clustered(caches=0, tile=2 * TILE),
     }.items()
 }
