@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import itertools
 from functools import cache
 
 import numpy as np
 import pytest
+from tests.contracts.all_pairs import every_pair, pairs_of, rows_of_all_pairs
 from tests.contracts.test_march import room
 
 import interreflect as ir
@@ -17,29 +17,7 @@ STAGES = ("voxelize", "light_voxels", "prefilter", "march", "glossy", "share", "
 CHOICES = {"grid": tuple(GRIDS.values()), **{stage: tuple(ir.techniques(stage)) for stage in STAGES}}
 
 
-def pairs_of(chosen):
-    """The pairs ((stage, number), (stage, number)) that a row of numbers holds."""
-    return set(itertools.combinations(zip(CHOICES, chosen, strict=True), 2))
-
-
-def rows_of_all_pairs():
-    """Rows of one number a stage that hold every pair of choices: greedily, the most missing pairs of a few random rows."""
-    random = np.random.default_rng(7)
-    counts = [len(choices) for choices in CHOICES.values()]
-    missing = set()
-    for (i, a), (j, b) in itertools.combinations(enumerate(CHOICES), 2):
-        missing |= {((a, x), (b, y)) for x in range(counts[i]) for y in range(counts[j])}
-    rows = []
-    while missing:
-        (a, x), (b, y) = min(missing)
-        fixed = {a: x, b: y}
-        tries = [tuple(fixed.get(s, int(random.integers(n))) for s, n in zip(CHOICES, counts, strict=True)) for _ in range(40)]
-        rows.append(max(tries, key=lambda row: len(pairs_of(row) & missing)))
-        missing -= pairs_of(rows[-1])
-    return rows
-
-
-ROWS = rows_of_all_pairs()
+ROWS = rows_of_all_pairs(CHOICES)
 
 
 @cache
@@ -57,9 +35,7 @@ def method_of(row):
 
 
 def test_the_rows_hold_every_pair():
-    counts = [len(choices) for choices in CHOICES.values()]
-    held = set().union(*(pairs_of(row) for row in ROWS))
-    assert len(held) == sum(a * b for a, b in itertools.combinations(counts, 2))
+    assert set().union(*(pairs_of(CHOICES, row) for row in ROWS)) == every_pair(CHOICES)
 
 
 @pytest.mark.parametrize("row", ROWS, ids=lambda row: "-".join(map(str, row)))
