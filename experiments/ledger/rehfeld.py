@@ -102,7 +102,6 @@ CLAIMS = (
         rigid_bodies.studies,
         r11,
     ),
-    Claim("R12", "5", "Under camera motion caches jump.", missing="caches that are reused"),
     Claim(
         "R13", "4", "Starting with ray marching costs the speed-up at small angles without gain in precision.", start_as_rays.studies, r13
     ),

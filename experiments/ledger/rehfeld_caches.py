@@ -4,7 +4,17 @@ from __future__ import annotations
 
 import interreflect as ir
 from experiments.ledger.claim import Check, Claim, above, below, told
-from experiments.rehfeld import adapted_axes, figure_4, figure_5, figure_6, figure_7, figure_8, gather_or_splat, one_ray_a_texel
+from experiments.rehfeld import (
+    adapted_axes,
+    figure_4,
+    figure_5,
+    figure_6,
+    figure_7,
+    figure_8,
+    gather_or_splat,
+    one_ray_a_texel,
+    popping,
+)
 
 
 def r1(records: ir.Records) -> list[Check]:
@@ -86,6 +96,28 @@ def r10(*records: ir.Records) -> list[Check]:
     ]
 
 
+def r12(*records: ir.Records) -> list[Check]:
+    found = popping.table(*records)
+    checks = []
+    for case in popping.CASES:
+        of = found.loc[case]
+        jumping, steady, floor = of.loc["clustered"], of.loc[popping.KEEPING], of.loc[popping.FLOOR]
+        checks += [
+            # What a picture's resampling changes by itself is the floor; caches jump where most of the change is theirs.
+            above(f"{case}: caches jump", jumping["mean"] / floor["mean"], 2.0, "x the change with a cache at every pixel"),
+            # A quarter less is what one notices in a film.
+            below(f"{case}: kept places jump less", steady["beyond"] / jumping["beyond"], 0.75, " of the change beyond that"),
+        ]
+    told_ = [
+        told(
+            case,
+            ", ".join(f"{way} {row['mean']:.3f} ({row['pops']:.1%} pop; {row['caches']:.0f})" for way, row in found.loc[case].iterrows()),
+        )
+        for case in popping.CASES
+    ]
+    return checks + told_
+
+
 def r14(records: ir.Records) -> list[Check]:
     found = one_ray_a_texel.table(records)
     (ray, ray_near), (cone, cone_near) = (100 * found.loc[f"one {way} a texel", ["missed", "nowhere near"]] for way in ("ray", "cone"))
@@ -107,5 +139,6 @@ CLAIMS = (
     Claim("R5", "figure 8", "A larger gathering radius smooths and costs more.", figure_8.studies, r5),
     Claim("R9", "3.3", "Gathering beats splatting in speed.", gather_or_splat.studies, r9),
     Claim("R10", "3.2", "Axes adapted to the normals give fewer clusters, above all on bent surfaces.", adapted_axes.studies, r10),
+    Claim("R12", "5", "Under camera motion caches jump; keeping last frame's places lessens it.", popping.studies, r12),
     Claim("R14", "3.1", "One cone a texel misses no bright part; one ray does.", one_ray_a_texel.studies, r14),
 )  # fmt: skip

@@ -4,7 +4,17 @@ import pandas as pd
 import pytest
 from experiments.ledger import rehfeld_caches as ledger
 from experiments.ledger.claim import DOES_NOT_HOLD, HOLDS, IN_PART, Claim, judge
-from experiments.rehfeld import adapted_axes, figure_4, figure_5, figure_6, figure_7, figure_8, gather_or_splat, one_ray_a_texel
+from experiments.rehfeld import (
+    adapted_axes,
+    figure_4,
+    figure_5,
+    figure_6,
+    figure_7,
+    figure_8,
+    gather_or_splat,
+    one_ray_a_texel,
+    popping,
+)
 
 
 def rows(columns, **values):
@@ -32,6 +42,14 @@ def clusters(bent, flat):
     return pd.DataFrame({"clusters": [bent, 100.0, flat, 100.0], "difference": 0.1}, index=index)
 
 
+def jumps(clustered, kept, floor):
+    """The same in every motion."""
+    means = {"clustered": clustered, popping.KEEPING: kept, popping.FLOOR: floor}
+    index = pd.MultiIndex.from_product([popping.CASES, means])
+    of = [{"mean": mean, "beyond": mean - floor, "pops": 0.1, "caches": 500.0} for mean in means.values()]
+    return pd.DataFrame(of * len(popping.CASES), index=index)
+
+
 def missed(ray, cone):
     return pd.DataFrame({"missed": [0.0, ray, cone], "nowhere near": [0.0, ray, cone]}, index=list(one_ray_a_texel.FILLS))
 
@@ -53,6 +71,9 @@ CASES = [
     ("r9", gather_or_splat, pd.DataFrame({"milliseconds": [10, 9, 30]}, index=SPLATS), IN_PART, 2),
     ("r10", adapted_axes, clusters(60.0, 80.0), HOLDS, 2),
     ("r10", adapted_axes, clusters(95.0, 80.0), DOES_NOT_HOLD, 2),
+    ("r12", popping, jumps(0.06, 0.03, 0.02), HOLDS, 4),
+    ("r12", popping, jumps(0.06, 0.055, 0.02), IN_PART, 4),
+    ("r12", popping, jumps(0.03, 0.03, 0.02), DOES_NOT_HOLD, 4),
     ("r14", one_ray_a_texel, missed(0.3, 0.01), HOLDS, 1),
     ("r14", one_ray_a_texel, missed(0.3, 0.2), IN_PART, 1),
 ]  # fmt: skip
