@@ -2427,10 +2427,10 @@ class Gather:
     description: ClassVar[dict[str, Any]]
     stages: ClassVar[tuple[str, ...]]
 
-    def __init__(self, *, radius: float=..., world_radius: float=..., max_angle: float=..., uncovered: str=...) -> None:
+    def __init__(self, *, radius: float=..., world_radius: float=..., max_angle: float=..., uncovered: str=..., search: str=...) -> None:
         ...
 
-    def replace(self, *, radius: float=..., world_radius: float=..., max_angle: float=..., uncovered: str=...) -> Gather:
+    def replace(self, *, radius: float=..., world_radius: float=..., max_angle: float=..., uncovered: str=..., search: str=...) -> Gather:
         ...
 
     def asdict(self) -> dict[str, Any]:
@@ -2456,6 +2456,10 @@ class Gather:
 
     @property
     def uncovered(self) -> str:
+        ...
+
+    @property
+    def search(self) -> str:
         ...
 class Evaluated:
     """Every pixel has a cache of its own, whatever the distribution."""

@@ -204,3 +204,48 @@ def test_a_played_motion_hands_its_caches_on():
     # TracedLighting of a sun and fills by cones know no chance, so the seed of a frame changes nothing.
     assert np.array_equal(still[0].image, still[1].image)
     assert ir.exact(method.distribute) == ir.CachePerPixel()
+
+
+@pytest.mark.parametrize("knobs", [{}, {"radius": 5.0, "world_radius": 3.0}, {"radius": 0.5}, {"radius": 0.0}, {"world_radius": 1000.0}])
+@pytest.mark.parametrize("factor", [1e-3, 1.0, 1e3])
+def test_caches_found_through_a_hierarchy_light_pixels_as_those_found_by_tiles(knobs, factor):
+    """Whatever the weights reject was found for nothing, and what they take is added in the same order: the same bits."""
+    scene = scene_of(
+        *(mesh.replace(transform=np.diag([factor] * 3 + [1.0]) @ mesh.transform) for mesh in room(at()).meshes if mesh.body == "world"),
+        lights=[SUN],
+        cameras={"view": ir.Camera(position=tuple(factor * np.array(CAMERA.position)), target=(0, 0.3 * factor, 0), fov_x=55)},
+    )
+    gbuffer = ir.trace_gbuffer(scene, size=SIZE)
+    voxels = ir.voxelize(ir.SurfaceSampling(), scene, ir.Grid(resolution=24).place(scene))
+    pyramid = ir.prefilter(ir.OctantCoverage(), ir.light_voxels(ir.TracedLighting(both_sides=True), scene, voxels))
+    caches = ir.preconvolve(ir.MipChain(), ir.fill(ir.ConeFill(resolution=4), places_of(ir.Clustered(caches=200), scene), pyramid, scene))
+    lights = [ir.interpolate(ir.Gather(search=search, **knobs), caches, gbuffer, scene, pyramid) for search in ("tiles", "hierarchy")]
+    assert np.array_equal(lights[0].weight, lights[1].weight)
+    assert np.array_equal(lights[0].gathered.irradiance, lights[1].gathered.irradiance)
+    assert lights[0].counts.asdict() == lights[1].counts.asdict()
+    assert (lights[0].counts.asdict().get("cache_evaluations", 0) > 20000) == (knobs.get("radius") not in (0.0, 0.5))
+
+
+def test_many_suns_bodies_apart_and_all_bounces_run_with_reused_caches_and_come_near_the_truth():
+    """Ten suns: the paper's lights. Bounces wants one hierarchy, so bodies are apart in the other one."""
+    random = np.random.default_rng(3)
+    suns = [
+        ir.DirectionalLight(direction=(*random.uniform(-0.6, 0.6, 1), -1.0, *random.uniform(-0.6, 0.6, 1)), irradiance=tuple(rgb))
+        for rgb in random.uniform(0.1, 0.5, (10, 3))
+    ]
+    scene = room(lights=suns)
+    places = ir.ReuseCaches(distribute=ir.Clustered(caches=200))
+    shared = {"grid": ir.Grid(resolution=48), "distribute": places, "fill": ir.TracedFill()}
+    lit = ir.TracedLighting(both_sides=True)
+    once = ir.methods.ClusteredRadianceCaching(**shared, light_voxels=lit, bodies="apart")
+    always = ir.methods.ClusteredRadianceCaching(**shared, light_voxels=ir.Bounces(light_voxels=lit))
+    assert once.bounces == 1 and always.bounces is None
+    means = {}
+    for method in (once, always):
+        frames = list(method.prepare(scene).play(ir.Motion.still(frames=6), size=SIZE))
+        truth = ir.reference(scene, size=SIZE, bounces=method.bounces, noise=1e-2, max_spp=256)
+        means[method.bounces] = frames[-1].indirect.mean()
+        assert frames[-1].profile.stages["distribute"].counts["reused_caches"] > 100
+        # Roughly: what rays of the fill meet has the light of voxels, to which cones bring that of further bounces, a sixth too much of it.
+        assert means[method.bounces] == pytest.approx(truth.indirect.mean(), rel=0.15)
+    assert means[None] > 1.1 * means[1], "further bounces add light"

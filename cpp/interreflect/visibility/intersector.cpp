@@ -1,10 +1,7 @@
 #include "visibility/intersector.h"
 
-#include <embree3/rtcore.h>
-
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cstddef>
 #include <cstring>
 #include <stdexcept>
@@ -12,34 +9,10 @@
 #include <utility>
 #include <vector>
 
+#include "visibility/ray_device.h"
+
 namespace interreflect {
 namespace {
-
-/// Bytes that the ray library holds for all scenes.
-std::atomic<std::ptrdiff_t>& held_bytes() {
-    static std::atomic<std::ptrdiff_t> bytes{0};
-    return bytes;
-}
-
-/// One device for the process: it holds threads and settings, no scene.
-RTCDevice device() {
-    static const RTCDevice shared = [] {
-        const RTCDevice made = rtcNewDevice(nullptr);
-        if (made == nullptr) throw std::runtime_error("the ray library has no device on this machine");
-        const auto count = [](void*, ssize_t bytes, bool) {
-            held_bytes() += bytes;
-            return true;
-        };
-        rtcSetDeviceMemoryMonitorFunction(made, count, nullptr);
-        return made;
-    }();
-    return shared;
-}
-
-void check_device() {
-    const RTCError error = rtcGetDeviceError(device());
-    if (error != RTC_ERROR_NONE) throw std::runtime_error("the ray library failed with error " + std::to_string(error));
-}
 
 /// Consecutive triangles with one mask or none: one geometry of the ray library, which reads our arrays in place.
 struct Run {
@@ -80,7 +53,7 @@ void mask_filter(const RTCFilterFunctionNArguments* args) {
 
 void attach_run(const Hierarchy& hierarchy, const Group& group, std::size_t number, RTCBuildQuality quality) {
     const Run& run = hierarchy.runs[number];
-    const RTCGeometry geometry = rtcNewGeometry(device(), RTC_GEOMETRY_TYPE_TRIANGLE);
+    const RTCGeometry geometry = rtcNewGeometry(ray_device(), RTC_GEOMETRY_TYPE_TRIANGLE);
     rtcSetGeometryBuildQuality(geometry, quality);
     rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, hierarchy.arrays->positions.data(), 0,
                                sizeof(vec3), group.first_vertex + group.vertex_count);
@@ -113,16 +86,16 @@ std::shared_ptr<const Hierarchy> build_group(const Geometry& geometry, const Gro
                                              const std::vector<int>& mask_of_material,
                                              std::span<const std::shared_ptr<const Mask>> masks, RTCBuildQuality quality) {
     auto hierarchy = std::make_shared<Hierarchy>();
-    const std::ptrdiff_t before = held_bytes();
+    const std::ptrdiff_t before = ray_device_bytes();
     hierarchy->arrays = geometry.arrays;
     hierarchy->masks.assign(masks.begin(), masks.end());
     hierarchy->runs = cut_runs(*geometry.arrays, group, mask_of_material, masks);
-    hierarchy->scene = rtcNewScene(device());
+    hierarchy->scene = rtcNewScene(ray_device());
     rtcSetSceneBuildQuality(hierarchy->scene, quality);
     for (std::size_t i = 0; i < hierarchy->runs.size(); ++i) attach_run(*hierarchy, group, i, quality);
     rtcCommitScene(hierarchy->scene);
-    check_device();
-    hierarchy->bytes = static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, held_bytes() - before));
+    check_ray_device();
+    hierarchy->bytes = static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, ray_device_bytes() - before));
     return hierarchy;
 }
 
@@ -132,7 +105,7 @@ static_assert(sizeof(RTCRayHit16) == sizeof(RayPacket) && offsetof(RTCRayHit16, 
 
 /// Whether packets of 16 run as such; elsewhere they run as two of 8.
 bool native_16() {
-    static const bool native = rtcGetDeviceProperty(device(), RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED) != 0;
+    static const bool native = rtcGetDeviceProperty(ray_device(), RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED) != 0;
     return native;
 }
 
@@ -214,13 +187,13 @@ void Intersector::Implementation::build_root() {
         root = groups[0]->scene;
         return;
     }
-    const std::ptrdiff_t before = held_bytes();
-    root = rtcNewScene(device());
+    const std::ptrdiff_t before = ray_device_bytes();
+    root = rtcNewScene(ray_device());
     owns_root = true;
     for (std::uint32_t i = 0; i < geometry->instances.size(); ++i) {
         const Instance& instance = geometry->instances[i];
         if (geometry->groups[instance.group].triangle_count == 0) continue;
-        const RTCGeometry placed = rtcNewGeometry(device(), RTC_GEOMETRY_TYPE_INSTANCE);
+        const RTCGeometry placed = rtcNewGeometry(ray_device(), RTC_GEOMETRY_TYPE_INSTANCE);
         rtcSetGeometryInstancedScene(placed, groups[instance.group]->scene);
         rtcSetGeometryTransform(placed, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, &instance.world_from_local);
         rtcCommitGeometry(placed);
@@ -229,8 +202,8 @@ void Intersector::Implementation::build_root() {
         rtcReleaseGeometry(placed);
     }
     rtcCommitScene(root);
-    check_device();
-    root_bytes = static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, held_bytes() - before));
+    check_ray_device();
+    root_bytes = static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, ray_device_bytes() - before));
 }
 
 Hit Intersector::Implementation::make_hit(std::uint32_t instance_id, std::uint32_t geometry_id, std::uint32_t primitive,

@@ -1,12 +1,15 @@
 #include "caches/interpolate/gather.h"
 
 #include <algorithm>
+#include <limits>
+#include <optional>
 #include <vector>
 
 #include "caches/interpolate/finish.h"
 #include "caches/interpolate/sum_caches.h"
 #include "caches/interpolate/uncovered.h"
 #include "math/parallel.h"
+#include "visibility/sphere_hierarchy.h"
 
 namespace interreflect {
 namespace {
@@ -31,6 +34,23 @@ void caches_near(const CachePlaces& places, const Tile& block, float radius, std
     }
 }
 
+/// Spheres in which caches count.
+void build(const CachePlaces& places, const CacheWeights& weights, std::optional<SphereHierarchy>& hierarchy) {
+    std::vector<float> radii(places.size());
+    for (std::size_t i = 0; i < radii.size(); ++i) radii[i] = weights.world_radius(i);
+    hierarchy.emplace(std::span(places.position.data(), places.size()), radii);
+}
+
+/// The caches whose spheres reach the ball about the pixels' surfaces, in ascending order.
+void caches_near(const SphereHierarchy& hierarchy, const PixelViews& views, std::vector<std::uint32_t>& near) {
+    vec3 lower(std::numeric_limits<float>::infinity()), upper(-std::numeric_limits<float>::infinity());
+    for (int i = 0; i < views.count; ++i) {
+        const vec3 position(views.position[0][i], views.position[1][i], views.position[2][i]);
+        lower = glm::min(lower, position), upper = glm::max(upper, position);
+    }
+    hierarchy.reach(0.5f * (lower + upper), 0.5f * glm::length(upper - lower), near);
+}
+
 }  // namespace
 
 CacheLight interpolate(const Gather& technique, const ConvolvedCaches* caches, const GBuffer& gbuffer, const Scene& scene,
@@ -40,6 +60,8 @@ CacheLight interpolate(const Gather& technique, const ConvolvedCaches* caches, c
     const CacheWeights weights(technique, places, false);
     const PixelViewer viewer(gbuffer, scene, *caches);
     const CacheSummer summer(*caches, weights, gbuffer, scene);
+    std::optional<SphereHierarchy> hierarchy;
+    if (technique.search == "hierarchy") build(places, weights, hierarchy);
     std::vector<Served> served(tile_count(gbuffer.width, gbuffer.height, block_size));
     parallel_tiles(gbuffer.width, gbuffer.height, block_size, [&](const Tile& block) {
         thread_local PixelViews views;
@@ -49,7 +71,10 @@ CacheLight interpolate(const Gather& technique, const ConvolvedCaches* caches, c
         viewer.look(block, views);
         if (views.count == 0) return;
         sums.clear(views.count);
-        caches_near(places, block, weights.screen_radius(), near);
+        if (hierarchy)
+            caches_near(*hierarchy, views, near);
+        else
+            caches_near(places, block, weights.screen_radius(), near);
         for (const std::uint32_t cache : near) served[block.index].evaluations += summer.add(cache, views, sums);
         finish_pixels(*caches, views, sums, light, served[block.index]);
     });
