@@ -3,112 +3,107 @@
 #include <algorithm>
 #include <vector>
 
-#include "caches/fill/texels.h"
+#include "caches/preconvolve/convolve.h"
 #include "math/hemisphere_map.h"
 #include "math/parallel.h"
 
 namespace interreflect {
 namespace {
 
-/// A weighted mean of texels of a finer map.
-struct Share {
-    int texel;
-    float weight;
-};
-using Mean = std::vector<Share>;
-
 /// Texels of an m x m map from those of an n x n one, by how much of each lies within: equal areas are equal solid angles.
-std::vector<Mean> coarser(int n, int m) {
+SparseMeans coarser(int n, int m) {
     const float step = static_cast<float>(n) / static_cast<float>(m);
     const auto overlap = [&](int texel, int fine) {
         const float begin = std::max(static_cast<float>(texel) * step, static_cast<float>(fine));
         const float end = std::min(static_cast<float>(texel + 1) * step, static_cast<float>(fine + 1));
         return std::max(end - begin, 0.0f) / step;
     };
-    std::vector<Mean> means;
+    SparseMeans means{{0}, {}};
     for (int y = 0; y < m; ++y)
         for (int x = 0; x < m; ++x) {
-            Mean& mean = means.emplace_back();
             for (int j = 0; j < n; ++j)
                 for (int i = 0; i < n; ++i)
-                    if (const float weight = overlap(x, i) * overlap(y, j); weight > 0.0f) mean.push_back({j * n + i, weight});
+                    if (const float weight = overlap(x, i) * overlap(y, j); weight > 0.0f)
+                        means.shares.push_back({j * n + i, weight});
+            means.first.push_back(static_cast<int>(means.shares.size()));
         }
     return means;
 }
 
-/// The cosine lobe about the directions of an m x m map, from the texels of an n x n one. What lies below the cache's horizon is
-/// not known; it counts as what is.
-std::vector<Mean> cosine_lobes(int n, int m) {
-    std::vector<Mean> means;
+/// Directions all over the texels of an n x n map, texel by texel.
+constexpr int directions_each = 16;
+std::vector<vec3> directions_in(int n) {
+    constexpr int side = 4;
+    static_assert(side * side == directions_each);
+    std::vector<vec3> directions;
+    for (int texel = 0; texel < n * n; ++texel)
+        for (int i = 0; i < directions_each; ++i) {
+            const int x = side * (texel % n) + i % side, y = side * (texel / n) + i / side;
+            directions.push_back(hemisphere_direction(map_texel_centre(x, y, side * n)));
+        }
+    return directions;
+}
+
+/// The cosine lobe about the directions of an m x m map, from the texels of an n x n one: each counts with the mean cosine over
+/// it, as the one at its centre is far off on the map's diagonals. What lies below the cache's horizon is not known; it counts as
+/// what is.
+DenseMeans cosine_lobes(int n, int m) {
+    DenseMeans means(n * n, m * m);
+    const std::vector<vec3> directions = directions_in(n);
+    std::vector<float> cosine(static_cast<std::size_t>(n) * static_cast<std::size_t>(n));
     for (int y = 0; y < m; ++y)
         for (int x = 0; x < m; ++x) {
             const vec3 normal = hemisphere_direction(map_texel_centre(x, y, m));
-            Mean& mean = means.emplace_back();
             float sum = 0;
-            for (int j = 0; j < n; ++j)
-                for (int i = 0; i < n; ++i) {
-                    const float cosine = glm::dot(normal, hemisphere_direction(map_texel_centre(i, j, n)));
-                    if (cosine <= 0.0f) continue;
-                    mean.push_back({j * n + i, cosine});
-                    sum += cosine;
-                }
-            // One texel's centre may lie on the horizon of a direction that points along it.
-            if (sum <= 0.0f) mean.assign(1, {0, sum = 1.0f});
-            for (auto& share : mean) share.weight /= sum;
+            std::fill(cosine.begin(), cosine.end(), 0.0f);
+            for (std::size_t i = 0; i < directions.size(); ++i) {
+                const float here = std::max(glm::dot(normal, directions[i]), 0.0f);
+                cosine[i / directions_each] += here, sum += here;
+            }
+            for (int i = 0; i < n * n; ++i) means.set(i, y * m + x, cosine[i] / sum);
         }
     return means;
 }
 
-void add_up(const std::vector<Mean>& means, const vec4* from, vec4* to) {
-    for (std::size_t i = 0; i < means.size(); ++i) {
-        vec4 sum(0);
-        for (const auto& share : means[i]) sum += from[share.texel] * share.weight;
-        to[i] = sum;
-    }
+/// The cosine lobe is so wide that a coarse level will do.
+constexpr int cosine_source = 16;
+
+int table_source(const std::vector<int>& sizes) {
+    int level = 0;
+    while (sizes[level] > cosine_source) ++level;
+    return level;
 }
 
-/// The cosine lobe is so wide that a coarse level will do.
-constexpr int cosine_source = 8;
-
 struct Convolution {
-    std::vector<std::vector<Mean>> levels;  // 1 and on, from the one before
-    std::vector<Mean> table;
-    int table_source = 0;  // level
+    std::vector<SparseMeans> levels;  // 1 and on, from the one before
+    int source;                       // level of the table
+    DenseMeans table;
 
-    Convolution(const std::vector<int>& sizes, int table_size) {
+    Convolution(const std::vector<int>& sizes, int table_size)
+        : source(table_source(sizes)), table(cosine_lobes(sizes[source], table_size)) {
         for (std::size_t i = 1; i < sizes.size(); ++i) levels.push_back(coarser(sizes[i - 1], sizes[i]));
-        while (sizes[table_source] > cosine_source) ++table_source;
-        table = cosine_lobes(sizes[table_source], table_size);
     }
 };
 
-void store(const std::vector<vec4>& texels, std::uint16_t* to) {
-    for (const auto& texel : texels) write_texel(to, vec3(texel), texel.w), to += 4;
-}
-
 void convolve_layer(const Convolution& by, const Buffer<std::uint16_t>& filled, std::size_t caches, ConvolvedCaches& shape,
                     ConvolvedCaches::Layer& layer) {
-    const auto base = static_cast<std::size_t>(shape.level_sizes[0]) * shape.level_sizes[0];
-    const auto chain = static_cast<std::size_t>(shape.chain_texels), table = by.table.size();
-    layer.chain = Buffer<std::uint16_t>(4 * caches * chain);
-    layer.table = Buffer<std::uint16_t>(4 * caches * table);
-    parallel_blocks(caches, 16, [&](std::size_t begin, std::size_t end) {
-        std::vector<vec4> finer(base), coarse, cosine(table);
+    const auto base = 4 * static_cast<std::size_t>(shape.level_sizes[0]) * shape.level_sizes[0];
+    const auto chain = 4 * static_cast<std::size_t>(shape.chain_texels);
+    const auto table = 4 * static_cast<std::size_t>(shape.table_size) * shape.table_size;
+    layer.chain = Buffer<std::uint16_t>(caches * chain);
+    layer.table = Buffer<std::uint16_t>(caches * table);
+    parallel_blocks(caches, 64, [&](std::size_t begin, std::size_t end) {
+        std::vector<float> levels(base + chain), cosine(static_cast<std::size_t>(by.table.stride()));
+        // Level 0, and then the chain as it is stored.
+        const auto level_at = [&](std::size_t i) {
+            return levels.data() + (i == 0 ? 0 : base + 4 * static_cast<std::size_t>(shape.level_begins[i]));
+        };
         for (std::size_t cache = begin; cache < end; ++cache) {
-            finer.resize(base);
-            for (std::size_t i = 0; i < base; ++i) finer[i] = read_texel(filled.data() + 4 * (cache * base + i));
-            for (std::size_t level = 0; level < shape.level_sizes.size(); ++level) {
-                if (level > 0) {
-                    coarse.resize(by.levels[level - 1].size());
-                    add_up(by.levels[level - 1], finer.data(), coarse.data());
-                    store(coarse, layer.chain.data() + 4 * (cache * chain + shape.level_begins[level]));
-                    finer.swap(coarse);
-                }
-                if (static_cast<int>(level) == by.table_source) {
-                    add_up(by.table, finer.data(), cosine.data());
-                    store(cosine, layer.table.data() + 4 * cache * table);
-                }
-            }
+            halves_to_floats(filled.data() + cache * base, base, levels.data());
+            for (std::size_t i = 0; i < by.levels.size(); ++i) apply(by.levels[i], level_at(i), level_at(i + 1));
+            floats_to_halves(levels.data() + base, chain, layer.chain.data() + cache * chain);
+            apply(by.table, level_at(static_cast<std::size_t>(by.source)), cosine.data());
+            floats_to_halves(cosine.data(), table, layer.table.data() + cache * table);
         }
     });
 }

@@ -11,8 +11,8 @@ namespace interreflect {
 /// of the mean weighted by the cosine, for the diffuse one [Scherzer et al. 2012; Rehfeld et al. 2014, 3.3].
 struct MipChain {
     int table = 7;
-    std::string width = "one_percent";
-    double level_bias = 0.0;
+    std::string width = "resultant";
+    double level_bias = -0.75;
 
     bool operator==(const MipChain&) const = default;
     static constexpr auto description = describe(
@@ -24,8 +24,10 @@ struct MipChain {
               "how wide a lobe is taken to be: `one_percent` where it falls to 1 % of its peak, as in the paper; `resultant` the "
               "uniform cone with its mean resultant length",
               Unit::none, one_of("one_percent|resultant")},
-        Param{"level_bias", &MipChain::level_bias, "levels added to the one whose texels have the lobe's solid angle", Unit::none,
-              between(-4, 4)});
+        Param{"level_bias", &MipChain::level_bias,
+              "levels added to the one whose texels have the lobe's solid angle; look-ups between texels widen a lobe by "
+              "themselves",
+              Unit::none, between(-4, 4)});
 };
 
 ConvolvedCaches preconvolve(const MipChain& technique, std::shared_ptr<const FilledCaches> filled);
