@@ -22,7 +22,7 @@ struct SparseMeans {
 /// zeros up to whole groups of vectors.
 class DenseMeans {
   public:
-    static constexpr int group = 128;  // floats: eight vectors of sixteen
+    static constexpr int group = 32;  // floats: two vectors of sixteen
 
     DenseMeans(int inputs, int outputs)
         : inputs_(inputs),
@@ -44,7 +44,7 @@ void halves_to_floats(const std::uint16_t* halves, std::size_t count, float* flo
 void floats_to_halves(const float* floats, std::size_t count, std::uint16_t* halves);
 /// `to` has room for outputs() texels.
 void apply(const SparseMeans& means, const float* from, float* to);
-/// `to` has room for stride() floats.
-void apply(const DenseMeans& means, const float* from, float* to);
+/// Of four maps at a time; `to` has room for stride() floats each.
+void apply(const DenseMeans& means, const float* const from[4], float* const to[4]);
 
 }  // namespace interreflect

@@ -92,18 +92,29 @@ void convolve_layer(const Convolution& by, const Buffer<std::uint16_t>& filled, 
     const auto table = 4 * static_cast<std::size_t>(shape.table_size) * shape.table_size;
     layer.chain = Buffer<std::uint16_t>(caches * chain);
     layer.table = Buffer<std::uint16_t>(caches * table);
-    parallel_blocks(caches, 64, [&](std::size_t begin, std::size_t end) {
-        std::vector<float> levels(base + chain), cosine(static_cast<std::size_t>(by.table.stride()));
-        // Level 0, and then the chain as it is stored.
-        const auto level_at = [&](std::size_t i) {
-            return levels.data() + (i == 0 ? 0 : base + 4 * static_cast<std::size_t>(shape.level_begins[i]));
+    constexpr std::size_t together = 4;
+    parallel_blocks(caches, 16 * together, [&](std::size_t begin, std::size_t end) {
+        const auto wide = static_cast<std::size_t>(by.table.stride());
+        std::vector<float> levels(together * (base + chain)), cosine(together * wide);
+        // Of one of the caches: level 0, and then the chain as it is stored.
+        const auto level_at = [&](std::size_t one, std::size_t i) {
+            return levels.data() + one * (base + chain) +
+                   (i == 0 ? 0 : base + 4 * static_cast<std::size_t>(shape.level_begins[i]));
         };
-        for (std::size_t cache = begin; cache < end; ++cache) {
-            halves_to_floats(filled.data() + cache * base, base, levels.data());
-            for (std::size_t i = 0; i < by.levels.size(); ++i) apply(by.levels[i], level_at(i), level_at(i + 1));
-            floats_to_halves(levels.data() + base, chain, layer.chain.data() + cache * chain);
-            apply(by.table, level_at(static_cast<std::size_t>(by.source)), cosine.data());
-            floats_to_halves(cosine.data(), table, layer.table.data() + cache * table);
+        const float* from[together];
+        float* to[together];
+        for (std::size_t one = 0; one < together; ++one)
+            from[one] = level_at(one, static_cast<std::size_t>(by.source)), to[one] = cosine.data() + one * wide;
+        for (std::size_t first = begin; first < end; first += together) {
+            const std::size_t count = std::min(together, end - first);
+            for (std::size_t one = 0; one < count; ++one) {
+                halves_to_floats(filled.data() + (first + one) * base, base, level_at(one, 0));
+                for (std::size_t i = 0; i < by.levels.size(); ++i) apply(by.levels[i], level_at(one, i), level_at(one, i + 1));
+                floats_to_halves(level_at(one, 0) + base, chain, layer.chain.data() + (first + one) * chain);
+            }
+            apply(by.table, from, to);
+            for (std::size_t one = 0; one < count; ++one)
+                floats_to_halves(to[one], table, layer.table.data() + (first + one) * table);
         }
     });
 }

@@ -12,7 +12,7 @@ namespace interreflect {
 struct MipChain {
     int table = 7;
     std::string width = "resultant";
-    double level_bias = -0.75;
+    double level_bias = -1.0;
 
     bool operator==(const MipChain&) const = default;
     static constexpr auto description = describe(
