@@ -21,8 +21,7 @@ KEEPING = "clustered, kept"
 WAYS = {
     "clustered": ir.Clustered(caches=CACHES),
     KEEPING: ir.ReuseCaches(distribute=ir.Clustered(caches=CACHES)),
-    # Kept side by side they are about half as many again: a smaller target makes as many as the others.
-    "clustered, two kept": ir.ReuseCaches(distribute=ir.Clustered(caches=CACHES * 3 // 4), most=2),
+    "clustered, one kept each": ir.ReuseCaches(distribute=ir.Clustered(caches=CACHES), most=1, spacing=0.0),
     "cube faces": ir.CubeFaceClustered(caches=CACHES),
     "equidistant": ir.Equidistant(caches=CACHES),
     FLOOR: ir.CachePerPixel(),

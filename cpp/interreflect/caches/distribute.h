@@ -2,7 +2,8 @@
 ///
 ///   CachePlaces distribute(const Technique&, const GBuffer&, const Scene&, const CachePlaces* last);
 ///
-/// At most one cache a cluster of pixels, at the pixel of it that stands best for the others (place.h). `last` is what the same
+/// One cache a cluster of pixels, at the pixel of it that stands best for the others (tile_clusters.h); ReuseCaches may have none
+/// there, or several. `last` is what the same
 /// technique returned for the frame before (ReuseCaches looks at it); null: there is none. Exact counterpart: CachePerPixel.
 #pragma once
 #include <variant>
