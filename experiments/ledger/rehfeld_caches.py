@@ -104,9 +104,9 @@ def r12(*records: ir.Records) -> list[Check]:
         jumping, steady, floor = of.loc["clustered"], of.loc[popping.KEEPING], of.loc[popping.FLOOR]
         checks += [
             # What a picture's resampling changes by itself is the floor; caches jump where most of the change is theirs.
-            above(f"{case}: caches jump", jumping["mean"] / floor["mean"], 2.0, "x the change with a cache at every pixel"),
+            above(f"{case}: caches jump", float(jumping["mean"] / floor["mean"]), 2.0, "x the change with a cache at every pixel"),
             # A quarter less is what one notices in a film.
-            below(f"{case}: kept places jump less", steady["beyond"] / jumping["beyond"], 0.75, " of the change beyond that"),
+            below(f"{case}: kept places jump less", float(steady["beyond"] / jumping["beyond"]), 0.75, " of the change beyond that"),
         ]
     told_ = [
         told(

@@ -2170,10 +2170,10 @@ class ReuseCaches:
     description: ClassVar[dict[str, Any]]
     stages: ClassVar[tuple[str, ...]]
 
-    def __init__(self, *, distribute: Any=..., most: int=..., max_distance: float=..., max_angle: float=..., tolerance: float=...) -> None:
+    def __init__(self, *, distribute: Any=..., most: int=..., spacing: float=..., max_distance: float=..., max_angle: float=..., tolerance: float=...) -> None:
         ...
 
-    def replace(self, *, distribute: Any=..., most: int=..., max_distance: float=..., max_angle: float=..., tolerance: float=...) -> ReuseCaches:
+    def replace(self, *, distribute: Any=..., most: int=..., spacing: float=..., max_distance: float=..., max_angle: float=..., tolerance: float=...) -> ReuseCaches:
         ...
 
     def asdict(self) -> dict[str, Any]:
@@ -2191,6 +2191,10 @@ class ReuseCaches:
 
     @property
     def most(self) -> int:
+        ...
+
+    @property
+    def spacing(self) -> float:
         ...
 
     @property
