@@ -194,7 +194,8 @@ def test_tiles_keep_their_size_while_their_clusters_are_about_as_many_as_are_wan
             last = places_of(ir.ReuseCaches(distribute=held, tolerance=tolerance), room(camera=camera), last)
             sizes[tolerance].append(last.tile)
             searched = places_of(held, room(camera=camera))
-            assert tolerance > 0 or last.tile == searched.tile
+            # Two sizes may make as many clusters.
+            assert tolerance > 0 or last.tile == searched.tile or len(last) == wanted
             assert last.counts.asdict()["clusters"] <= max(wanted * (1 + tolerance), searched.counts.asdict()["clusters"])
     jumps = {tolerance: np.count_nonzero(np.diff(tiles)) for tolerance, tiles in sizes.items()}
     assert jumps[0.25] < jumps[0.0], sizes

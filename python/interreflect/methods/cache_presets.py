@@ -11,7 +11,7 @@ from interreflect.methods.voxel_presets import REHFELD_2014_VOXELS, STEPS
 REHFELD_2014: dict[str, Any] = {
     **{name: REHFELD_2014_VOXELS[name] for name in ("grid", "voxelize", "light_voxels", "prefilter")},
     "distribute": _core.Clustered(caches=4096, exponent=8.0),
-    "fill": _core.ConeFill(resolution=16, **STEPS),
+    "fill": _core.ConeFill(resolution=16, normal_offset=1.5, **STEPS),
     "preconvolve": _core.MipChain(width="one_percent", level_bias=0.0),
     "interpolate": _core.Gather(radius=2.0),
 }

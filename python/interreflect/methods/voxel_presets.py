@@ -35,7 +35,7 @@ STEPS: dict[str, Any] = {"step": 0.5, "first_diameter": 0.75, "level_bias": 0.0,
 REHFELD_2014_VOXELS: dict[str, Any] = {
     "grid": _core.Grid(resolution=128),
     "voxelize": _core.SurfaceSampling(),
-    "light_voxels": _core.ConeLighting(),
+    "light_voxels": _core.ConeLighting(step=0.5),
     "prefilter": _core.SurfaceCoverage(),
     "march": _core.DiffuseCones(**STEPS),
     "glossy": _core.GlossyCone(**STEPS),

@@ -33,6 +33,9 @@ std::array<vec3, 3> NormalAxes::choose(std::span<const float> histogram) const {
     for (std::size_t i = 0; i < n; ++i)
         if (histogram[i] > 0.0f)
             for (std::size_t j = 0; j < n; ++j) rating[j] += histogram[i] * smooth_[i * n + j];
+    const float most = *std::max_element(rating.begin(), rating.end());
+    if (most > 0.0f)
+        for (auto& one : rating) one /= most;
     std::array<vec3, 3> axes;
     for (auto& axis : axes) {
         const auto best = static_cast<std::size_t>(std::max_element(rating.begin(), rating.end()) - rating.begin());

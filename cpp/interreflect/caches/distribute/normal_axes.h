@@ -8,7 +8,8 @@
 
 namespace interreflect {
 
-/// A histogram of normals over the sphere is smoothed by a Gaussian; the bin rated highest gives an axis, and
+/// A histogram of normals over the sphere is smoothed by a Gaussian, and its bins are rated as shares of the fullest, lest the
+/// outcome depend on how many pixels a tile has; the bin rated highest gives an axis, and
 /// w = (w + 1) (1 - |n . n_best|^exponent) lowers what is collinear with it, for the next one. The 1 makes bins that no normal is
 /// in gain, orthogonal ones most: that is what spreads the later axes where few normals ask for them (ERRATA: not purely
 /// decreasing, and blind to the sign: whoever uses the axes must tell their two ends apart).

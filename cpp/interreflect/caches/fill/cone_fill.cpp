@@ -13,9 +13,11 @@
 namespace interreflect {
 namespace {
 
-/// Of one texel: a uniform cone of half angle a covers 2 pi (1 - cos a), the texel 2 pi / n^2.
+/// Of one texel: a uniform cone of half angle a covers 2 pi (1 - cos a), the texel 2 pi / n^2. No wider than the knob allows: a
+/// cone that is a half space advances without end at its first step.
 float texel_half_angle(int resolution) {
-    return std::acos(1.0f - 1.0f / (static_cast<float>(resolution) * static_cast<float>(resolution)));
+    constexpr float widest = 70.0f * degrees_to_radians;
+    return std::min(std::acos(1.0f - 1.0f / (static_cast<float>(resolution) * static_cast<float>(resolution))), widest);
 }
 
 struct Texel {

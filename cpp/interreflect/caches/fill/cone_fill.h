@@ -15,7 +15,9 @@ struct ConeFill : MarchKnobs {
     int resolution = 16;
     double half_angle = 0.0;
 
-    ConeFill() : MarchKnobs{} {}
+    // Less error than the common knobs, against TracedFill, on cars, Cornell box, atrium, Sponza and random rooms, in fewer
+    // steps.
+    ConeFill() : MarchKnobs{.first_diameter = 1.0, .normal_offset = 1.25, .correlation = 0.25} {}
     bool operator==(const ConeFill&) const = default;
     static constexpr auto description =
         describe("ConeFill", "One cone a texel, marched through the voxels.", Source{"Rehfeld et al. 2014, 3.1"},
