@@ -124,8 +124,11 @@ def test_a_cluster_gets_no_cache_of_its_own_where_one_that_stays_is_near():
     assert len(apart) > 10 and min(apart) > 0.5
 
 
-def test_a_cache_that_an_occluder_hides_is_dropped_and_its_cluster_gets_another():
-    board = quad([[-0.9, 0.2, 1.2], [0.9, 0.2, 1.2], [0.9, 0.9, 1.2], [-0.9, 0.9, 1.2]])
+@pytest.mark.parametrize("board", [
+    quad([[-0.9, 0.2, 1.2], [0.9, 0.2, 1.2], [0.9, 0.9, 1.2], [-0.9, 0.9, 1.2]]),
+    floor(0.25, half=1.9),  # hides the floor, whose normal is the same
+], ids=("upright", "level"))  # fmt: skip
+def test_a_cache_that_an_occluder_hides_is_dropped_and_its_cluster_gets_another(board):
     technique = ir.ReuseCaches(distribute=ir.Clustered(caches=150))
     before = places_of(technique, room())
     hidden = np.asarray(ir.trace_gbuffer(room(None, board), size=SIZE).depth) < np.asarray(ir.trace_gbuffer(room(), size=SIZE).depth) - 0.05
