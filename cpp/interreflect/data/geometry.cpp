@@ -76,6 +76,23 @@ void append(GeometryArrays& arrays, const MeshView& mesh, const Placement* baked
     }
 }
 
+Bounds bounds_of(const GeometryArrays& arrays, const Group& group, const Instance& instance) {
+    Bounds bounds;
+    for (std::uint32_t i = 0; i < group.vertex_count; ++i) {
+        const vec3& p = arrays.positions[group.first_vertex + i];
+        bounds.add(instance.identity ? p : instance.world_from_local * vec4(p, 1));
+    }
+    return bounds;
+}
+
+/// An instance and the box about it.
+Instance placed_instance(const GeometryArrays& arrays, const std::vector<Group>& groups, std::uint32_t group,
+                         const Placement& placement) {
+    Instance instance = make_instance(group, placement);
+    instance.bounds = bounds_of(arrays, groups[group], instance);
+    return instance;
+}
+
 }  // namespace
 
 std::uint64_t Geometry::triangle_count() const {
@@ -84,18 +101,9 @@ std::uint64_t Geometry::triangle_count() const {
     return count;
 }
 
-Geometry::Bounds Geometry::bounds() const {
-    constexpr float infinity = std::numeric_limits<float>::infinity();
-    Bounds bounds{vec3(infinity), vec3(-infinity)};
-    for (const auto& instance : instances) {
-        const Group& group = groups[instance.group];
-        for (std::uint32_t i = 0; i < group.vertex_count; ++i) {
-            vec3 p = arrays->positions[group.first_vertex + i];
-            if (!instance.identity) p = instance.world_from_local * vec4(p, 1);
-            bounds.lower = glm::min(bounds.lower, p);
-            bounds.upper = glm::max(bounds.upper, p);
-        }
-    }
+Bounds Geometry::bounds() const {
+    Bounds bounds;
+    for (const auto& instance : instances) bounds.add(instance.bounds);
     return bounds;
 }
 
@@ -130,6 +138,7 @@ std::shared_ptr<const Geometry> make_geometry(std::span<const MeshView> meshes, 
         if (placement.body == 0 && uses[placement.mesh] == 1) append(*arrays, meshes[placement.mesh], &placement);
     close_group(0, 0);
     geometry->instances.push_back(Instance{});
+    geometry->instances[0].bounds = bounds_of(*arrays, geometry->groups[0], geometry->instances[0]);
 
     std::map<std::uint32_t, std::uint32_t> group_of_mesh;
     for (const auto& placement : placements) {
@@ -142,7 +151,7 @@ std::shared_ptr<const Geometry> make_geometry(std::span<const MeshView> meshes, 
             append(*arrays, meshes[placement.mesh], nullptr);
             close_group(first_triangle, first_vertex);
         }
-        geometry->instances.push_back(make_instance(found->second, placement));
+        geometry->instances.push_back(placed_instance(*arrays, geometry->groups, found->second, placement));
     }
     arrays->vertices = Buffer<Vertex>(arrays->positions.size());
     for (std::size_t i = 0; i < arrays->vertices.size(); ++i)
@@ -160,7 +169,7 @@ std::shared_ptr<const Geometry> move_geometry(const Geometry& geometry, std::spa
         placement.mesh = 0;
         check_placement(placement, i, 1);
         placement.body = geometry.instances[i + 1].body;
-        moved->instances[i + 1] = make_instance(geometry.instances[i + 1].group, placement);
+        moved->instances[i + 1] = placed_instance(*geometry.arrays, geometry.groups, geometry.instances[i + 1].group, placement);
     }
     return moved;
 }
@@ -174,7 +183,7 @@ std::shared_ptr<const Geometry> part_of_geometry(const Geometry& geometry, std::
         Placement placement;
         placement.body = body;
         placement.world_from_local = body_from_world * mat4(instance.world_from_local);
-        part->instances.push_back(body == 0 ? instance : make_instance(instance.group, placement));
+        part->instances.push_back(body == 0 ? instance : placed_instance(*part->arrays, part->groups, instance.group, placement));
     }
     return part;
 }

@@ -4,6 +4,7 @@
 /// placed several times, in its own space. A hit names an instance and a triangle; the triangle's number is global.
 #pragma once
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -47,6 +48,13 @@ struct Group {
     std::uint32_t first_triangle = 0, triangle_count = 0;
     std::uint32_t first_vertex = 0, vertex_count = 0;
 };
+/// lower > upper where there is nothing.
+struct Bounds {
+    vec3 lower{std::numeric_limits<float>::infinity()}, upper{-std::numeric_limits<float>::infinity()};
+
+    void add(const vec3& p) { lower = glm::min(lower, p), upper = glm::max(upper, p); }
+    void add(const Bounds& b) { lower = glm::min(lower, b.lower), upper = glm::max(upper, b.upper); }
+};
 struct Instance {
     std::uint32_t group = 0;
     std::uint32_t body = 0;
@@ -54,6 +62,7 @@ struct Instance {
     mat3 normal_from_local{1.0f};   // inverse transpose
     bool identity = true;
     bool flips = false;  // mirrors: reverses the winding
+    Bounds bounds{};     // world space
 };
 
 struct Geometry {
@@ -63,9 +72,6 @@ struct Geometry {
 
     /// Triangles in all instances.
     std::uint64_t triangle_count() const;
-    struct Bounds {
-        vec3 lower, upper;  // lower > upper where there is nothing
-    };
     Bounds bounds() const;
 };
 

@@ -40,7 +40,7 @@ float LightView::texel_measure(float x, float y) const {
     return area / (squared * std::sqrt(squared));
 }
 
-LightView view_of(const DirectionalLight& light, const Geometry::Bounds& bounds, int size) {
+LightView view_of(const DirectionalLight& light, const Bounds& bounds, int size) {
     LightView view;
     view.perspective = false;
     view.size = size;

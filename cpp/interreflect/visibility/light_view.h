@@ -45,7 +45,7 @@ struct LightView {
 };
 
 /// Orthographic over the scene's bounds.
-LightView view_of(const DirectionalLight& light, const Geometry::Bounds& bounds, int size);
+LightView view_of(const DirectionalLight& light, const Bounds& bounds, int size);
 /// One perspective picture of a spot narrower than 75 degrees (half angle); the six sides of a cube for a wider one.
 std::vector<LightView> views_of(const SpotLight& light, int size);
 /// The six sides of a cube; each a texel wider than 90 degrees on every side, so that neighbours of border texels exist.

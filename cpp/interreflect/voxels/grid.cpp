@@ -11,7 +11,7 @@ namespace {
 struct Setting {
     const Grid& grid;
     const Camera* camera;
-    Geometry::Bounds bounds;
+    Bounds bounds;
     float aspect, extent;  // extent: the bounds' longest side
 
     const Camera& needed_camera(const char* what) const {
