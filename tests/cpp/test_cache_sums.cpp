@@ -56,6 +56,7 @@ void look_about(int count, int levels, Rng& rng, PixelViews& views) {
         views.screen[0][i] = 16 * rng.uniform(), views.screen[1][i] = 16 * rng.uniform();
         views.level[i] = i % 3 == 0 || !some ? PixelViews::no_lobe : rng.uniform() * static_cast<float>(levels - 1);
     }
+    bound_groups(views);
 }
 
 void expect_near(const vec4& got, const vec4& expected, float tolerance) {

@@ -24,7 +24,21 @@ float one_percent_cosine(Lobe lobe, float alpha, float exponent) {
 }
 
 PixelViewer::PixelViewer(const GBuffer& gbuffer, const Scene& scene, const ConvolvedCaches& caches)
-    : gbuffer_(gbuffer), scene_(scene), caches_(caches), tables_(gbuffer, scene) {}
+    : gbuffer_(gbuffer), scene_(scene), caches_(caches), tables_(gbuffer, scene) {
+    if (caches.samples > 0) only_level_ = 0.0f;
+    if (caches.samples > 0 || caches.width == LobeWidth::resultant) return;
+    for (const Material& material : scene.materials) {
+        if (!material.glossy()) continue;
+        const Lobe lobe = gbuffer.lobe.value_or(material.lobe);
+        const float level = level_of(one_percent_cosine(lobe, 0.0f, material.exponent));
+        // Such lobes are as wide as the pixel's alpha says.
+        if (has_microfacets(lobe) || !(material.exponent > 0.0f) || level != only_level_.value_or(level)) {
+            only_level_.reset();
+            return;
+        }
+        only_level_ = level;
+    }
+}
 
 /// The lobe that was last looked at, and its level: neighbours tend to have the same.
 struct PixelViewer::Width {
@@ -39,7 +53,7 @@ float PixelViewer::level_of(float cosine) const {
 }
 
 float PixelViewer::level_of(std::size_t pixel, float half_angle, Width& last) const {
-    if (caches_.samples > 0) return 0.0f;
+    if (only_level_) return *only_level_;
     if (caches_.width == LobeWidth::resultant) return level_of(std::cos(half_angle));
     const PixelLobe of = lobe_at(gbuffer_, scene_.materials[scene_.material_of(gbuffer_.triangle[pixel])], pixel);
     const float alpha = gbuffer_.alpha[pixel];
@@ -50,29 +64,39 @@ float PixelViewer::level_of(std::size_t pixel, float half_angle, Width& last) co
 
 void PixelViewer::look(const Tile& block, PixelViews& views) const {
     constexpr int side = 4;
-    std::array<std::uint32_t, PixelViews::capacity> seen;
-    std::size_t count = 0;
+    views.count = 0;
     for (int y0 = block.y0; y0 < block.y1; y0 += side)
         for (int x0 = block.x0; x0 < block.x1; x0 += side)
             for (int y = y0; y < std::min(y0 + side, block.y1); ++y)
-                for (int x = x0; x < std::min(x0 + side, block.x1); ++x)
-                    if (const auto pixel = static_cast<std::uint32_t>(y * gbuffer_.width + x); gbuffer_.hit(pixel))
-                        seen[count++] = pixel;
-    look(std::span(seen.data(), count), views);
+                for (int x = x0; x < std::min(x0 + side, block.x1); ++x) {
+                    const auto pixel = static_cast<std::uint32_t>(y * gbuffer_.width + x);
+                    if (!gbuffer_.hit(pixel)) continue;
+                    const int i = views.count++;
+                    views.pixel[i] = pixel;
+                    views.screen[0][i] = static_cast<float>(x) + 0.5f, views.screen[1][i] = static_cast<float>(y) + 0.5f;
+                }
+    look_up(views);
 }
 
 void PixelViewer::look(std::span<const std::uint32_t> pixels, PixelViews& views) const {
-    thread_local Reflections lobes;
-    std::array<std::uint16_t, PixelViews::capacity> of;  // lobe -> view
-    lobes.count = 0;
     views.count = static_cast<int>(pixels.size());
     for (int i = 0; i < views.count; ++i) {
         const std::uint32_t pixel = pixels[static_cast<std::size_t>(i)];
         views.pixel[i] = pixel;
-        for (int k = 0; k < 3; ++k)
-            views.position[k][i] = gbuffer_.position[pixel][k], views.normal[k][i] = gbuffer_.normal[pixel][k];
         views.screen[0][i] = static_cast<float>(pixel % gbuffer_.width) + 0.5f;
         views.screen[1][i] = static_cast<float>(pixel / gbuffer_.width) + 0.5f;
+    }
+    look_up(views);
+}
+
+void PixelViewer::look_up(PixelViews& views) const {
+    thread_local Reflections lobes;
+    std::array<std::uint16_t, PixelViews::capacity> of;  // lobe -> view
+    lobes.count = 0;
+    for (int i = 0; i < views.count; ++i) {
+        const std::uint32_t pixel = views.pixel[i];
+        for (int k = 0; k < 3; ++k)
+            views.position[k][i] = gbuffer_.position[pixel][k], views.normal[k][i] = gbuffer_.normal[pixel][k];
         views.level[i] = PixelViews::no_lobe;
         if (!(max_component(gbuffer_.specular[pixel]) > 0.0f)) continue;
         of[lobes.count] = static_cast<std::uint16_t>(i);
@@ -84,6 +108,7 @@ void PixelViewer::look(std::span<const std::uint32_t> pixels, PixelViews& views)
         views.screen[0][i] = views.screen[1][i] = 0.0f;
         views.level[i] = PixelViews::no_lobe;
     }
+    bound_groups(views);
     views.finest = caches_.levels(), views.coarsest = -1;
     if (lobes.count == 0) return;
     find_lobes(tables_, gbuffer_.camera.position, false, lobes);

@@ -1,5 +1,8 @@
 /// Pixels as caches serve them: where, about which normal, and over which glossy lobe.
 #pragma once
+#include <algorithm>
+#include <limits>
+#include <optional>
 #include <span>
 
 #include "data/caches.h"
@@ -13,6 +16,7 @@ namespace interreflect {
 /// Parallel arrays. Beyond `count`, up to a whole vector of lanes, stand pixels that no cache reaches.
 struct PixelViews {
     static constexpr int capacity = Reflections::capacity, block_size = 16, most_lanes = 16;
+    static constexpr int group = most_lanes, groups = capacity / group;
     static constexpr float no_lobe = -2.0f;  // further than a level below the first
     static_assert(block_size * block_size <= capacity && capacity % most_lanes == 0);
 
@@ -43,7 +47,20 @@ struct PixelViews {
     alignas(64) float level[capacity];         // of the maps, between the first and the last; no_lobe
     vec3 albedo[capacity];                     // directional albedo at this view
     int finest = 0, coarsest = -1;             // levels that lobes are read from
+
+    /// Of one coordinate within each group of pixels; empty where there are none. What is not finite is left out.
+    struct Bounds {
+        alignas(64) float lower[groups], upper[groups];
+        void clear() {
+            std::fill_n(lower, groups, std::numeric_limits<float>::infinity());
+            std::fill_n(upper, groups, -std::numeric_limits<float>::infinity());
+        }
+    };
+    Bounds position_bounds[3], normal_bounds[3], screen_bounds[2];
 };
+
+/// Finds the bounds of all groups.
+void bound_groups(PixelViews& views);
 
 /// The way from pixels to what they look up, in maps of one kind.
 class PixelViewer {
@@ -56,6 +73,7 @@ class PixelViewer {
 
   private:
     struct Width;
+    void look_up(PixelViews& views) const;
     float level_of(std::size_t pixel, float half_angle, Width& last) const;
     float level_of(float cosine) const;
 
@@ -63,6 +81,7 @@ class PixelViewer {
     const Scene& scene_;
     const ConvolvedCaches& caches_;
     LobeTables tables_;
+    std::optional<float> only_level_;  // where all lobes are read from the same
 };
 
 /// cos of the angle from its middle at which a lobe, seen from straight above, has fallen to 1 % of its peak: Phong's about the

@@ -1,5 +1,7 @@
 #include "caches/interpolate/sum_caches.h"
 
+#include <algorithm>
+#include <bit>
 #include <cstring>
 
 #include "caches/interpolate/cache_reader.h"
@@ -39,29 +41,79 @@ HWY_INLINE Vec3 everywhere(const vec3& v) {
     return {hn::Set(d, v.x), hn::Set(d, v.y), hn::Set(d, v.z)};
 }
 
-HWY_INLINE void reach(const CacheWeights::Terms& cache, const PixelViews& views, CacheSums& sums, Reached& reached) {
+/// A cache's weights, for one pixel a lane.
+struct WeightLanes {
+    Vec3 position, normal;
+    Vector column, row, world, screen, slope, start;
+
+    explicit HWY_INLINE WeightLanes(const CacheWeights::Terms& cache)
+        : position(everywhere(cache.position)),
+          normal(everywhere(cache.normal)),
+          column(hn::Set(Tag(), cache.screen.x)),
+          row(hn::Set(Tag(), cache.screen.y)),
+          world(hn::Set(Tag(), cache.world_inverse)),
+          screen(hn::Set(Tag(), cache.screen_inverse)),
+          slope(hn::Set(Tag(), cache.slope)),
+          start(hn::Set(Tag(), cache.start)) {}
+    HWY_INLINE Vector near(const Vec3& away, Vector x, Vector y) const {
+        const Vector one = hn::Set(Tag(), 1.0f);
+        return hn::Min(hn::NegMulAdd(dot(away, away), world, one), hn::NegMulAdd(hn::MulAdd(x, x, hn::Mul(y, y)), screen, one));
+    }
+    HWY_INLINE Vector agreement(const Vec3& of) const { return hn::MulAdd(dot(of, normal), slope, start); }
+};
+
+/// A bit for each group of pixels that the cache may reach: the best that a pixel within the group's bounds could have. Rounding
+/// is monotonic, and the operations are those of the weights: no pixel of a positive weight is lost.
+HWY_INLINE std::uint32_t groups_within(const WeightLanes& cache, const PixelViews& views) {
+    const Tag d;
+    const Vector zero = hn::Zero(d);
+    const int lanes = static_cast<int>(hn::Lanes(d));
+    std::uint32_t groups = 0;
+    for (int g = 0; g < PixelViews::groups; g += lanes) {
+        const auto outside = [&](const PixelViews::Bounds& bounds, Vector at) HWY_ATTR {
+            const Vector below = hn::Sub(hn::Load(d, bounds.lower + g), at), above = hn::Sub(at, hn::Load(d, bounds.upper + g));
+            return hn::Max(hn::Max(below, above), zero);
+        };
+        const auto furthest = [&](const PixelViews::Bounds& bounds, Vector along) HWY_ATTR {
+            return hn::IfThenElse(hn::Gt(along, zero), hn::Load(d, bounds.upper + g), hn::Load(d, bounds.lower + g));
+        };
+        const Vec3 away{outside(views.position_bounds[0], cache.position.x), outside(views.position_bounds[1], cache.position.y),
+                        outside(views.position_bounds[2], cache.position.z)};
+        const Vector near =
+            cache.near(away, outside(views.screen_bounds[0], cache.column), outside(views.screen_bounds[1], cache.row));
+        const Vector agreement =
+            cache.agreement({furthest(views.normal_bounds[0], cache.normal.x), furthest(views.normal_bounds[1], cache.normal.y),
+                             furthest(views.normal_bounds[2], cache.normal.z)});
+        std::uint8_t bits[8] = {};
+        hn::StoreMaskBits(d, hn::And(hn::Gt(near, zero), hn::Gt(agreement, zero)), bits);
+        groups |= (bits[0] | static_cast<std::uint32_t>(bits[1]) << 8) << g;
+    }
+    return groups;
+}
+
+HWY_INLINE void reach(const CacheWeights::Terms& terms, const PixelViews& views, CacheSums& sums, Reached& reached) {
     const Tag d;
     const Vector zero = hn::Zero(d), one = hn::Set(d, 1.0f);
-    const Vec3 position = everywhere(cache.position), normal = everywhere(cache.normal);
-    const Vector column = hn::Set(d, cache.screen.x), row = hn::Set(d, cache.screen.y), start = hn::Set(d, cache.start);
-    const Vector world = hn::Set(d, cache.world_inverse), screen = hn::Set(d, cache.screen_inverse),
-                 slope = hn::Set(d, cache.slope);
+    const WeightLanes cache(terms);
     const int lanes = static_cast<int>(hn::Lanes(d));
-    for (int i = 0; i < views.count; i += lanes) {
+    const auto add = [&](int i) HWY_ATTR {
         const Vec3 at = load(views.position, i),
-                   away{hn::Sub(at.x, position.x), hn::Sub(at.y, position.y), hn::Sub(at.z, position.z)};
-        const Vector x = hn::Sub(hn::Load(d, views.screen[0] + i), column), y = hn::Sub(hn::Load(d, views.screen[1] + i), row);
-        const Vector near =
-            hn::Min(hn::NegMulAdd(dot(away, away), world, one), hn::NegMulAdd(hn::MulAdd(x, x, hn::Mul(y, y)), screen, one));
-        const Vector agreement = hn::MulAdd(dot(load(views.normal, i), normal), slope, start);
+                   away{hn::Sub(at.x, cache.position.x), hn::Sub(at.y, cache.position.y), hn::Sub(at.z, cache.position.z)};
+        const Vector near = cache.near(away, hn::Sub(hn::Load(d, views.screen[0] + i), cache.column),
+                                       hn::Sub(hn::Load(d, views.screen[1] + i), cache.row));
+        const Vector agreement = cache.agreement(load(views.normal, i));
         const Vector weight = hn::Mul(near, hn::Min(agreement, one));
         const auto within = hn::And(hn::Gt(near, zero), hn::Gt(agreement, zero));
-        if (hn::AllFalse(d, within)) continue;
+        if (hn::AllFalse(d, within)) return;
         const Vector kept = hn::IfThenElseZero(within, weight);
         hn::Store(kept, d, reached.weight + i);
         hn::Store(hn::Add(hn::Load(d, sums.weight + i), kept), d, sums.weight + i);
         reached.pixels += hn::CountTrue(d, within);
         reached.first[reached.vectors++] = static_cast<std::uint16_t>(i);
+    };
+    for (std::uint32_t groups = groups_within(cache, views); groups != 0; groups &= groups - 1) {
+        const int first = std::countr_zero(groups) * PixelViews::group;
+        for (int i = first; i < std::min(first + PixelViews::group, views.count); i += lanes) add(i);
     }
 }
 
