@@ -41,7 +41,8 @@ std::shared_ptr<const FilledCaches> noisy_caches(std::size_t count, int resoluti
     return std::make_shared<const FilledCaches>(std::move(filled));
 }
 
-/// Pixels all about the cube, two thirds of them with a lobe, of any level.
+/// Pixels all about the cube, two thirds of them with a lobe, of any level. Neighbours in the second half of the groups stand
+/// close together and are alike, as in pictures, so that caches pass over some groups.
 void look_about(int count, int levels, Rng& rng, PixelViews& views) {
     views.count = count;
     views.finest = 0, views.coarsest = levels - 1;
@@ -54,6 +55,15 @@ void look_about(int count, int levels, Rng& rng, PixelViews& views) {
             views.normal[k][i] = normal[k], views.direction[k][i] = direction[k];
         }
         views.screen[0][i] = 16 * rng.uniform(), views.screen[1][i] = 16 * rng.uniform();
+        if (const int first = i - i % PixelViews::group; i > PixelViews::capacity / 2 && i > first && some) {
+            vec3 near;
+            for (int k = 0; k < 3; ++k) near[k] = views.normal[k][first] + 0.2f * views.normal[k][i];
+            for (int k = 0; k < 3; ++k) {
+                views.normal[k][i] = glm::normalize(near)[k];
+                views.position[k][i] = views.position[k][first] + 0.05f * views.position[k][i];
+            }
+            for (int k = 0; k < 2; ++k) views.screen[k][i] = views.screen[k][first] + 0.25f * views.screen[k][i];
+        }
         views.level[i] = i % 3 == 0 || !some ? PixelViews::no_lobe : rng.uniform() * static_cast<float>(levels - 1);
     }
     bound_groups(views);
