@@ -17,8 +17,8 @@
 
 // Roofline, for a vector of sixteen pixels that one cache reaches: the weight 20 operations; where its maps are looked at 60,
 // kept while the caches share their normal; a table of up to 64 texels in registers 60, each of two levels of up to 32 texels 45.
-// Some 100 cycles, all of it arithmetic and permutations within the first cache; levels of more than 64 texels are gathered, in
-// 150.
+// Some 100 cycles, all of it arithmetic and permutations within the first cache; of levels with more than 64 texels each lane
+// loads its own.
 HWY_BEFORE_NAMESPACE();
 namespace interreflect {
 namespace HWY_NAMESPACE {
