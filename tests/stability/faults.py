@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+from importlib import import_module
 from types import SimpleNamespace
 
 import numpy as np
@@ -11,7 +12,8 @@ import interreflect as ir
 from interreflect import _core, stages
 from interreflect.stability.similar import similar
 
-CONES = "interreflect.methods.voxel_cone_tracing"
+# Where a stage is called: those that make voxels where methods have them in common, the others in the method.
+HOMES = ("interreflect.methods.voxel_scene", "interreflect.methods.voxel_cone_tracing")
 
 
 def overwrite(view, values):
@@ -185,4 +187,5 @@ def plant(patch, name):
         patch.setattr(path_tracing_denoised, "denoiser_for", guides_mirrored(path_tracing_denoised.denoiser_for))
     else:
         stage, faulty = FAULTS[name]
-        patch.setattr(f"{CONES}.{stage}", instead(stage, Stale())[1] if faulty is None else faulty)
+        home = next(home for home in map(import_module, HOMES) if hasattr(home, stage))
+        patch.setattr(home, stage, instead(stage, Stale())[1] if faulty is None else faulty)

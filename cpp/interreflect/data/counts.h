@@ -5,14 +5,14 @@
 namespace interreflect {
 
 struct Counts {
-    std::uint64_t rays = 0;           // nearest-hit rays
-    std::uint64_t shadow_rays = 0;    // any-hit rays
-    std::uint64_t paths = 0;          // camera paths
-    std::uint64_t samples = 0;        // surface samples taken to voxelize
-    std::uint64_t voxels = 0;         // voxels written
-    std::uint64_t cones = 0;          // cones marched
-    std::uint64_t cone_steps = 0;     // steps of all cones
-    std::uint64_t voxel_fetches = 0;  // filtered look-ups of the voxel pyramid
+    std::uint64_t rays = 0;               // nearest-hit rays
+    std::uint64_t shadow_rays = 0;        // any-hit rays
+    std::uint64_t paths = 0;              // camera paths
+    std::uint64_t samples = 0;            // surface samples taken to voxelize
+    std::uint64_t voxels = 0;             // voxels written
+    std::uint64_t cones = 0;              // cones marched
+    std::uint64_t cone_steps = 0;         // steps of all cones
+    std::uint64_t voxel_fetches = 0;      // filtered look-ups of the voxel pyramid
     std::uint64_t clusters = 0;           // of pixels
     std::uint64_t caches = 0;             // placed or filled
     std::uint64_t reused_caches = 0;      // of those, kept from the last frame
