@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 from study_fakes import Fake, Scene, lasting
 
+import interreflect as ir
 import interreflect.study.workers as workers
 from interreflect.study.run import run
 from interreflect.study.store import load_records
@@ -61,6 +62,19 @@ def test_a_cell_that_failed_for_a_limit_is_tried_again_under_a_wider_one_only(tm
         renders.append(len((tmp_path / "renders").read_bytes()))
     assert renders == [3, 3, 3, 4]  # the warm-up that hangs; warm-up and one repeat; then the first again
     assert "0.6 s" in load_records(tmp_path / "r")[0].failure
+
+
+def test_a_worker_that_stays_knows_the_cameras_of_a_scene_of_the_same_content(tmp_path):
+    first = ir.scenes.cornell_box()
+    second = first.replace(cameras={"other": first.camera})
+    assert first.hash == second.hash
+    for number, scene in enumerate((first, second)):
+        study = Study(
+            name=f"cameras {number}", scenes=[scene], methods=[ir.methods.ConstantAmbient()], size=(16, 12), bounces=1, repeats=0,
+            reference=ir.Reference(noise=1.0, max_spp=4),
+        )  # fmt: skip
+        (record,) = run(study, tmp_path / str(number))
+        assert record.status == "ok", record.failure
 
 
 @pytest.mark.usefixtures("fake_truth")

@@ -104,8 +104,8 @@ class Bench:
             self._scene = self._prepared = None
             self._truths = {}
             give_back()
-            self._scene = (request.scene_hash, pickle.loads(request.scene))
-        if self._scene is None or self._scene[0] != request.scene_hash:
+            self._scene = (request.scene_key, pickle.loads(request.scene))
+        if self._scene is None or self._scene[0] != request.scene_key:
             raise RuntimeError("the worker was not given the scene")
         return self._scene[1]
 

@@ -36,7 +36,7 @@ class Ready:
 class Request:
     """One cell to measure. Answered by phases, as they begin, its pictures where they are kept, and then by a Reply."""
 
-    scene_hash: str
+    scene_key: str  # of its content and its cameras
     camera: str
     method: bytes  # pickled
     seed: int

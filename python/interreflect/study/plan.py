@@ -82,7 +82,7 @@ class Plan:
         cell, study = self.cells[index], self.study
         truth = self._truth_key(cell)
         return Request(
-            scene_hash=cell.scene.hash,
+            scene_key=_scene_key(cell.scene),
             camera=cell.camera,
             method=self._pickled(cell.method),
             seed=cell.seed,
@@ -199,6 +199,12 @@ def plain(value: Any) -> Any:
     if isinstance(value, np.generic):
         value = value.item()
     return value if value is None or isinstance(value, bool | int | str | float) else repr(value)
+
+
+def _scene_key(scene: Scene) -> str:
+    """What a worker may take for the same scene: the hash leaves cameras out, but the worker looks them up by name."""
+    cameras = {name: dataclasses.asdict(camera) for name, camera in scene.cameras.items()}
+    return f"{scene.hash} {hashlib.sha256(canonical(cameras).encode()).hexdigest()[:32]}"
 
 
 def scene_labels(study: Study) -> dict[str, str]:

@@ -56,7 +56,7 @@ class Worker:
     """One worker process and its pipes."""
 
     def __init__(self) -> None:
-        self.scene = ""  # hash of the scene that it holds
+        self.scene = ""  # key of the scene that it holds
         self._idle = -1  # bytes that it holds without a scene; unknown until it is ready
         self._said = tempfile.TemporaryFile()  # noqa: SIM115  what it writes to standard error, as long as it lives
         fcntl.fcntl(self._said, fcntl.F_SETFL, os.O_APPEND)
@@ -101,7 +101,7 @@ class Worker:
             reply = self._reply(limits, show)
         except (EOFError, BrokenPipeError):
             raise self._ended() from None
-        self.scene = request.scene_hash
+        self.scene = request.scene_key
         return reply
 
     def kill(self) -> None:
@@ -220,7 +220,7 @@ class Crew:
         self._worker = self._worker or Worker()
         if self._interrupted:  # before there was a worker to end
             raise Lost("interrupted")
-        given = None if self._worker.scene == request.scene_hash else scene()
+        given = None if self._worker.scene == request.scene_key else scene()
         request = dataclasses.replace(request, scene=given, calibration=self._calibration)
         reply = self._worker.measure(request, limits, show)
         self._calibration = reply.calibration or self._calibration
