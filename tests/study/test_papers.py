@@ -37,7 +37,7 @@ def smaller(study):
     """The same question with few pixels and samples, and grids that take no time."""
     less = {"grid.resolution": lambda n: n // 4, "texels": lambda n: n // 16, "frames": lambda n: 2}
     less |= {"distribute.caches": lambda n: n // 64, "fill.samples": lambda n: min(n, 4), "maps": lambda n: 1}
-    less |= {"fill.resolution": lambda n: min(n, 16)}
+    less |= {"fill.resolution": lambda n: n // 4}
     less |= {"light_voxels.size": lambda n: max(n // 16, 4), "shadow.size": lambda n: n // 16}
     methods = []
     for method in study.methods:
