@@ -137,3 +137,14 @@ def test_threads_do_not_change_what_arrives(technique):
         with _core.Threads(threads):
             made.append(np.asarray(stages.fill(technique, places, pyramid, scene, seed=3).texels).view(np.uint16))
     assert all((one == made[0]).all() for one in made)
+
+
+@pytest.mark.parametrize("fill", [ir.ConeFill(), ir.TracedFill(samples=2)], ids=lambda fill: type(fill).__name__)
+@pytest.mark.parametrize(("albedo", "radiance"), [(0.5, 1.0), (1e-6, 50.0), (0.5, 1e6)])
+def test_the_sky_is_as_bright_over_a_dark_floor_as_over_a_bright_one(fill, albedo, radiance):
+    """Voxels of a dark floor are kept in a unit in which the sky would not fit."""
+    image = np.full((8, 16, 3), radiance, np.float32)
+    view = {"above": ir.Camera(position=(0, 3, 0.1), target=(0, 0, 0), fov_x=20)}
+    scene = ir.Scene(meshes=[floor(half=3.0, albedo=(albedo,) * 3)], lights=[ir.EnvironmentLight(image=image)], cameras=view)
+    frame = ir.methods.ClusteredRadianceCaching(grid=ir.Grid(resolution=32), fill=fill).render(scene, size=(24, 16))
+    assert frame.direct.mean() == pytest.approx(albedo * radiance, rel=0.01)  # half floats and cones' maps of the sky

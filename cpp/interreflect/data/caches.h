@@ -59,7 +59,8 @@ struct FilledCaches {
     int resolution = 0;  // texels on a side
     float scale = 1.0f;  // radiance = texel * scale, W/(m^2 sr)
     Buffer<std::uint16_t> texels;
-    Buffer<std::uint16_t> sky;  // radiance of an environment image through what is open; empty where there is no image
+    Buffer<std::uint16_t> sky;  // radiance of an environment image through what is open, over `sky_scale`; empty without one
+    float sky_scale = 1.0f;     // dark surfaces under a bright sky have another range than it
     vec3 sky_radiance{0};       // of a constant environment
     Counts counts;
 

@@ -80,7 +80,8 @@ FilledCaches fill(const ConeFill& technique, std::shared_ptr<const CachePlaces> 
             const std::size_t k = i - begin, place = 4 * (i - i % each + texels[i % each].number);
             std::copy_n(packed.data() + 4 * k, 4, filled.texels.data() + place);
             if (!filled.sky.empty())
-                write_texel(filled.sky.data() + place, environment.mean(own[k].direction) * (batch.open[k] / filled.scale), 0.0f);
+                write_texel(filled.sky.data() + place, environment.mean(own[k].direction) * (batch.open[k] / filled.sky_scale),
+                            0.0f);
         }
     });
     for (const auto& one : counts) filled.counts += one;

@@ -71,7 +71,7 @@ FilledCaches fill(const TracedFill& technique, std::shared_ptr<const CachePlaces
                 const Seen seen = tracer.trace(cache, x, y, bundle, hits);
                 rays[cache] += bundle.size();
                 write_texel(filled.texels.data() + texel, seen.radiance * (each / filled.scale), seen.open * each);
-                if (!filled.sky.empty()) write_texel(filled.sky.data() + texel, seen.sky * (each / filled.scale), 0.0f);
+                if (!filled.sky.empty()) write_texel(filled.sky.data() + texel, seen.sky * (each / filled.sky_scale), 0.0f);
             }
     });
     for (const auto one : rays) filled.counts.rays += one;

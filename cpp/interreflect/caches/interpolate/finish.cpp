@@ -26,16 +26,16 @@ void clear_light(const Tile& tile, CacheLight& light) {
 
 void finish_pixel(const ConvolvedCaches& caches, const PixelViews::View& view, const CacheSum& sum, CacheLight& light) {
     const FilledCaches& filled = *caches.filled;
-    const float mean = 1.0f / sum.weight, unit = mean * filled.scale;
+    const float mean = 1.0f / sum.weight, unit = mean * filled.scale, sky_unit = mean * filled.sky_scale;
     const bool image = !filled.sky.empty();
     const std::uint32_t i = view.pixel;
     light.weight[i] = sum.weight;
     light.gathered.irradiance[i] = vec3(sum.diffuse) * (pi * unit);
     light.gathered.occlusion[i] = std::clamp(1.0f - sum.diffuse.w * mean, 0.0f, 1.0f);
-    light.gathered.sky[i] = image ? sum.diffuse_sky * (pi * unit) : filled.sky_radiance * (pi * sum.diffuse.w * mean);
+    light.gathered.sky[i] = image ? sum.diffuse_sky * (pi * sky_unit) : filled.sky_radiance * (pi * sum.diffuse.w * mean);
     if (!view.glossy) return;
     light.glossy.radiance[i] = vec3(sum.glossy) * view.albedo * unit;
-    light.glossy.sky[i] = view.albedo * (image ? sum.glossy_sky * unit : filled.sky_radiance * (sum.glossy.w * mean));
+    light.glossy.sky[i] = view.albedo * (image ? sum.glossy_sky * sky_unit : filled.sky_radiance * (sum.glossy.w * mean));
 }
 
 void finish_pixels(const ConvolvedCaches& caches, const PixelViews& views, const CacheSums& sums, CacheLight& light,
