@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import numpy as np
 import pytest
 from tests.contracts.all_pairs import every_pair, pairs_of, rows_of_all_pairs
-from tests.contracts.test_pairs import GRIDS, SIZE, reference, scene
+from tests.contracts.test_pairs import GRIDS, check_light, played
 
 import interreflect as ir
 
@@ -31,12 +30,4 @@ def test_the_rows_hold_every_pair():
 @pytest.mark.parametrize("row", ROWS, ids=lambda row: "-".join(map(str, row)))
 def test_techniques_of_any_two_stages_work_together(row):
     method = method_of(row)
-    prepared, history, frame = method.prepare(scene()), None, None
-    for _ in range(2):
-        frame = prepared.render(size=SIZE, history=history)
-        history = frame.history
-    assert np.isfinite(frame.image).all() and frame.image.min() >= 0
-    truth, in_view = reference(), isinstance(method.grid.warp, ir.Perspective | ir.Spherical)
-    # As for cones of each pixel: voxels of a view miss what lies beside and behind it, volume coverage thins walls, bounces add.
-    least = 0.15 if in_view else 0.4 if isinstance(method.prefilter, ir.VolumeCoverage) else 0.6
-    assert least < frame.indirect.mean() / truth.indirect.mean() < 1.6
+    check_light(method, played(method))

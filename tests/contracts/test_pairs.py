@@ -38,21 +38,34 @@ def test_the_rows_hold_every_pair():
     assert set().union(*(pairs_of(CHOICES, row) for row in ROWS)) == every_pair(CHOICES)
 
 
-@pytest.mark.parametrize("row", ROWS, ids=lambda row: "-".join(map(str, row)))
-def test_techniques_of_any_two_stages_work_together(row):
-    method = method_of(row)
+def played(method):
+    """The second of two frames: the first one's history is in it."""
     prepared, history, frame = method.prepare(scene()), None, None
     for _ in range(2):
         frame = prepared.render(size=SIZE, history=history)
         history = frame.history
+    return frame
+
+
+def sees_a_view(method):
+    return isinstance(method.grid.warp, ir.Perspective | ir.Spherical)
+
+
+def check_light(method, frame):
+    """Voxels of a view miss the walls beside and behind it, volume coverage thins walls; further bounces add a third to a half."""
     assert np.isfinite(frame.image).all() and frame.image.min() >= 0
-    truth, in_view = reference(), isinstance(method.grid.warp, ir.Perspective | ir.Spherical)
-    # Voxels of a view miss the walls beside and behind it, volume coverage thins walls; further bounces add a third to a half.
-    least = 0.15 if in_view else 0.4 if isinstance(method.prefilter, ir.VolumeCoverage) else 0.65
-    assert least < frame.indirect.mean() / truth.indirect.mean() < 1.6
+    least = 0.15 if sees_a_view(method) else 0.4 if isinstance(method.prefilter, ir.VolumeCoverage) else 0.65
+    assert least < frame.indirect.mean() / reference().indirect.mean() < 1.6
+
+
+@pytest.mark.parametrize("row", ROWS, ids=lambda row: "-".join(map(str, row)))
+def test_techniques_of_any_two_stages_work_together(row):
+    method = method_of(row)
+    frame = played(method)
+    check_light(method, frame)
     # Beyond a view nothing is known: cones see the sky there.
-    if isinstance(method.shade, ir.Exact) and not (in_view and isinstance(method.sky, ir.ConeSky)):
-        assert frame.direct.mean() == pytest.approx(truth.direct.mean(), rel=0.1)
+    if isinstance(method.shade, ir.Exact) and not (sees_a_view(method) and isinstance(method.sky, ir.ConeSky)):
+        assert frame.direct.mean() == pytest.approx(reference().direct.mean(), rel=0.1)
 
 
 @cache

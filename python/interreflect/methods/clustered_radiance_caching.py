@@ -8,7 +8,7 @@ from typing import Any
 from interreflect import _core
 from interreflect.frame import Image
 from interreflect.methods.cache_presets import PRESETS
-from interreflect.methods.knobs import knob, stage
+from interreflect.methods.knobs import stage
 from interreflect.methods.method import method
 from interreflect.methods.prepared import View
 from interreflect.methods.voxel_scene import VoxelMethod
@@ -33,10 +33,6 @@ class ClusteredRadianceCaching(VoxelMethod):
     `distribute` does not matter.
     """
 
-    grid: _core.Grid = _core.Grid(resolution=128)
-    voxelize: Any = stage(default=_core.SurfaceSampling())
-    light_voxels: Any = stage(default=_core.TracedLighting(both_sides=True))
-    prefilter: Any = stage(default=_core.OctantCoverage())
     distribute: Any = stage(default=_core.Clustered())
     fill: Any = stage(default=_core.ConeFill())
     preconvolve: Any = stage(default=_core.MipChain())
@@ -44,11 +40,6 @@ class ClusteredRadianceCaching(VoxelMethod):
     shade: Any = stage(default=_core.Exact())
     shadow: Any = stage(default=_core.TracedShadows())
     sky: Any = stage(default=_core.ConeSky())
-
-    bodies: str = knob(
-        default="together", doc="whether bodies share the scene's voxels, or keep voxels of their own that move with them",
-        choices=("together", "apart"),
-    )  # fmt: skip
 
     preset_values = PRESETS
 

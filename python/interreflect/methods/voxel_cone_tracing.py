@@ -6,7 +6,7 @@ from typing import Any
 
 from interreflect import _core
 from interreflect.frame import Image
-from interreflect.methods.knobs import knob, stage
+from interreflect.methods.knobs import stage
 from interreflect.methods.method import method
 from interreflect.methods.prepared import View
 from interreflect.methods.voxel_presets import PRESETS
@@ -24,21 +24,12 @@ class VoxelConeTracing(VoxelMethod):
     voxelized once and lit and filtered in every frame [Rehfeld et al. 2014, 3.1]; light of all bounces cannot be gathered so.
     """
 
-    grid: _core.Grid = _core.Grid(resolution=128)
-    voxelize: Any = stage(default=_core.SurfaceSampling())
-    light_voxels: Any = stage(default=_core.TracedLighting(both_sides=True))
-    prefilter: Any = stage(default=_core.OctantCoverage())
     march: Any = stage(default=_core.DiffuseCones())
     glossy: Any = stage(default=_core.GlossyCone(), optional=True)
     share: Any = stage(default=_core.Interleaved(width=4, height=4))
     shade: Any = stage(default=_core.Exact())
     shadow: Any = stage(default=_core.TracedShadows())
     sky: Any = stage(default=_core.ConeSky())
-
-    bodies: str = knob(
-        default="together", doc="whether bodies share the scene's voxels, or keep voxels of their own that move with them",
-        choices=("together", "apart"),
-    )  # fmt: skip
 
     preset_values = PRESETS
 

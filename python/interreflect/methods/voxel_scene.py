@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from interreflect import _core
 from interreflect.methods.bodies import parts_of, voxelize_bodies
-from interreflect.methods.method import Method
+from interreflect.methods.knobs import knob, stage
+from interreflect.methods.method import Method, method
 from interreflect.methods.prepared import View
 from interreflect.profile import Profile
 from interreflect.scenes.scene import Scene
 from interreflect.stages import holds_all_bounces, light_history, light_voxels, place, prefilter, voxelize
 
 
+@method
 class VoxelMethod(Method):
     """A method with the stages voxelize, light_voxels and prefilter, whose voxels live in `grid`.
 
@@ -20,12 +22,14 @@ class VoxelMethod(Method):
     al. 2014, 3.1].
     """
 
-    if TYPE_CHECKING:
-        grid: _core.Grid
-        voxelize: Any
-        light_voxels: Any
-        prefilter: Any
-        bodies: str
+    grid: _core.Grid = _core.Grid(resolution=128)
+    voxelize: Any = stage(default=_core.SurfaceSampling())
+    light_voxels: Any = stage(default=_core.TracedLighting(both_sides=True))
+    prefilter: Any = stage(default=_core.OctantCoverage())
+    bodies: str = knob(
+        default="together", doc="whether bodies share the scene's voxels, or keep voxels of their own that move with them",
+        choices=("together", "apart"),
+    )  # fmt: skip
 
     def __post_init__(self) -> None:
         super().__post_init__()
