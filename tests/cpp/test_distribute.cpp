@@ -1,12 +1,15 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 #include <numeric>
+#include <span>
 #include <vector>
 
 #include "caches/distribute/normal_axes.h"
 #include "caches/distribute/tile_clusters.h"
 #include "caches/distribute/tile_kernels.h"
+#include "caches/distribute/tile_pixels.h"
 #include "math/rng.h"
 #include "math/sampling.h"
 
@@ -26,30 +29,46 @@ std::vector<vec3> random_normals(std::size_t count, std::uint32_t seed) {
     return normals;
 }
 
-std::array<vec3, 3> axes_of(const std::vector<vec3>& normals) {
-    std::vector<std::uint32_t> bin(normals.size());
-    bin_normals(normals.data(), normals.size(), bins, bin.data());
+Coordinates coordinates_of(std::span<const vec3> vectors) {
+    Coordinates coordinates;
+    copy_vectors(vectors, {0, vectors.size(), vectors.size(), 1}, coordinates);
+    return coordinates;
+}
+
+/// Of those where `depth` is finite.
+std::vector<float> histogram_of(const std::vector<vec3>& normals, std::vector<float> depth) {
     std::vector<float> histogram(bins * bins);
-    for (const auto one : bin) histogram[one] += 1.0f;
-    return NormalAxes(bins, smoothing, exponent).choose(histogram);
+    depth.resize(with_room(normals.size()), 1.0f);
+    count_normals(coordinates_of(normals), depth.data(), normals.size(), bins, histogram.data());
+    return histogram;
+}
+
+std::array<vec3, 3> axes_of(const std::vector<vec3>& normals) {
+    return NormalAxes(bins, smoothing, exponent).choose(histogram_of(normals, {}));
 }
 
 std::uint32_t axis_of(const std::array<vec3, 3>& axes, const vec3& normal) {
-    std::uint32_t axis = 0;
-    nearest_axes(&normal, 1, axes, &axis);
-    return axis;
+    std::vector<std::uint32_t> axis(with_room(1));
+    nearest_axes(coordinates_of({&normal, 1}), 1, axes, axis.data());
+    return axis[0];
 }
 
-TEST(TileKernels, PutNormalsIntoTheirBinsOfTheOctahedralMap) {
-    const auto normals = random_normals(1003, 3);  // not whole vectors
-    std::vector<std::uint32_t> bin(normals.size());
-    bin_normals(normals.data(), normals.size(), bins, bin.data());
+TEST(TileKernels, CountTheNormalsInEachBinOfTheOctahedralMap) {
+    auto normals = random_normals(1003, 3);                               // not whole vectors
+    std::fill(normals.begin() + 300, normals.begin() + 700, normals[5]);  // a wall
+    std::erase_if(normals, [](const vec3& normal) {
+        const vec2 at = octahedral_square(normal) * static_cast<float>(bins), border = glm::abs(at - glm::round(at));
+        return std::min(border.x, border.y) < 1e-4f;  // either side may hold it
+    });
+    std::vector<float> depth(normals.size(), 1.0f), expected(bins * bins);
     for (std::size_t i = 0; i < normals.size(); ++i) {
         const vec2 at = octahedral_square(normals[i]) * static_cast<float>(bins);
-        const vec2 border = glm::abs(at - glm::round(at));
-        if (std::min(border.x, border.y) < 1e-4f) continue;  // either side may hold it
-        ASSERT_EQ(bin[i], static_cast<std::uint32_t>(at.x) + bins * static_cast<std::uint32_t>(at.y));
+        if (i % 7 == 3)
+            depth[i] = std::numeric_limits<float>::infinity();
+        else
+            expected[static_cast<std::size_t>(at.x) + bins * static_cast<std::size_t>(at.y)] += 1.0f;
     }
+    EXPECT_EQ(histogram_of(normals, depth), expected);
 }
 
 TEST(TileKernels, TellTheTwoEndsOfAnAxisApart) {
@@ -59,8 +78,8 @@ TEST(TileKernels, TellTheTwoEndsOfAnAxisApart) {
         EXPECT_EQ(axis_of(axes, -axes[static_cast<std::size_t>(k)]), static_cast<std::uint32_t>(2 * k + 1));
     }
     const auto normals = random_normals(517, 5);
-    std::vector<std::uint32_t> axis(normals.size());
-    nearest_axes(normals.data(), normals.size(), axes, axis.data());
+    std::vector<std::uint32_t> axis(with_room(normals.size()));
+    nearest_axes(coordinates_of(normals), normals.size(), axes, axis.data());
     for (std::size_t i = 0; i < normals.size(); ++i) {
         const vec3 towards = axes[axis[i] / 2] * (axis[i] % 2 == 1 ? -1.0f : 1.0f);
         ASSERT_GE(glm::dot(towards, normals[i]) + 1e-6f, max_component(glm::abs(normals[i])));
@@ -69,10 +88,12 @@ TEST(TileKernels, TellTheTwoEndsOfAnAxisApart) {
 
 TEST(TileKernels, CutDepthsAtPowersOfARatio) {
     // One slice an octave of near = 2: [2, 4) is slice 0, [4, 8) slice 1, [1, 2) slice -1.
-    const std::vector<float> depth = {2.001f, 3.999f, 4.001f, 1.999f, 1.001f, 500.0f, std::numeric_limits<float>::infinity(),
-                                      1e-30f};
+    std::vector<float> depth = {2.001f, 3.999f, 4.001f, 1.999f, 1.001f, 500.0f, std::numeric_limits<float>::infinity(), 1e-30f};
+    const std::size_t count = depth.size();
+    depth.resize(with_room(count), 1.0f);
     std::vector<std::uint32_t> slice(depth.size());
-    slice_depths(depth.data(), depth.size(), 0.5f, 1.0f, slice.data());
+    slice_depths(depth.data(), count, 0.5f, 1.0f, slice.data());
+    slice.resize(count);
     const std::uint32_t middle = 1U << 20;
     EXPECT_EQ(slice,
               (std::vector<std::uint32_t>{middle, middle, middle + 1, middle - 1, middle - 1, middle + 7, no_cache, slice[7]}));
@@ -120,7 +141,7 @@ GBuffer waves(int size, float unit) {
     gbuffer.width = gbuffer.height = size;
     const std::size_t pixels = gbuffer.pixels();
     gbuffer.position = Buffer<vec3>(pixels), gbuffer.normal = Buffer<vec3>(pixels),
-    gbuffer.triangle = Buffer<std::uint32_t>(pixels);
+    gbuffer.triangle = Buffer<std::uint32_t>(pixels), gbuffer.depth = Buffer<float>(pixels, 1.0f);
     for (std::size_t i = 0; i < pixels; ++i) {
         const auto x = static_cast<float>(i % static_cast<std::size_t>(size)),
                    y = static_cast<float>(i / static_cast<std::size_t>(size));
@@ -129,6 +150,31 @@ GBuffer waves(int size, float unit) {
         gbuffer.triangle[i] = i % 11 == 3 ? no_hit : 0U;
     }
     return gbuffer;
+}
+
+TilePixels pixels_of(const GBuffer& gbuffer, const Tile& tile) {
+    TilePixels pixels;
+    pixels.load(gbuffer, tile), pixels.load_positions(gbuffer);
+    return pixels;
+}
+
+TEST(TilePixels, AreThoseOfTheTileRowByRow) {
+    const GBuffer gbuffer = waves(37, 1.0f);
+    for (const Tile& tile : {Tile{0, 0, 37, 37, 0}, Tile{5, 7, 9, 9, 0}, Tile{20, 30, 37, 37, 0}, Tile{36, 36, 37, 37, 0}}) {
+        const TilePixels pixels = pixels_of(gbuffer, tile);
+        std::size_t i = 0;
+        for (int y = tile.y0; y < tile.y1; ++y)
+            for (int x = tile.x0; x < tile.x1; ++x, ++i) {
+                const std::size_t pixel = static_cast<std::size_t>(y) * 37 + static_cast<std::size_t>(x);
+                ASSERT_EQ(pixels.in_picture(i), pixel);
+                ASSERT_EQ(pixels.depth[i], gbuffer.depth[pixel]);
+                for (int k = 0; k < 3; ++k) {
+                    ASSERT_EQ(pixels.normal[static_cast<std::size_t>(k)][i], gbuffer.normal[pixel][k]);
+                    ASSERT_EQ(pixels.position[static_cast<std::size_t>(k)][i], gbuffer.position[pixel][k]);
+                }
+            }
+        EXPECT_EQ(pixels.count(), i);
+    }
 }
 
 std::vector<std::uint32_t> keys_of_waves(const GBuffer& gbuffer) {
@@ -143,7 +189,7 @@ TEST(TileClusters, HoldThePixelsOfEachKeyAndCountThem) {
     const Tile tile{0, 0, 37, 37, 0};
     const auto key = keys_of_waves(gbuffer);
     TileClusters clusters;
-    clusters.group(gbuffer, tile, key);
+    clusters.group(pixels_of(gbuffer, tile), key);
     ASSERT_GT(clusters.clusters.size(), 64U);  // more than the table starts with
     std::vector<std::uint32_t> members(clusters.clusters.size());
     std::vector<vec3> normal(clusters.clusters.size(), vec3(0));
@@ -172,8 +218,9 @@ TEST(TileClusters, ChooseThePixelWithTheBestScoreWhateverTheUnit) {
         const GBuffer gbuffer = waves(37, unit);
         const Tile tile{0, 0, 37, 37, 0};
         TileClusters clusters;
-        clusters.group(gbuffer, tile, keys_of_waves(gbuffer));
-        clusters.choose_pixels(gbuffer, tile);
+        const TilePixels pixels = pixels_of(gbuffer, tile);
+        clusters.group(pixels, keys_of_waves(gbuffer));
+        clusters.choose_pixels(pixels);
         std::vector<float> best(clusters.clusters.size(), -10.0f);
         const auto score = [&](const TileClusters::Cluster& c, std::size_t i) {
             const vec3 n = glm::normalize(c.normal), away = gbuffer.position[i] - 0.5f * (c.lower + c.upper);

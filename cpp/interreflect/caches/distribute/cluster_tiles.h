@@ -20,13 +20,13 @@ inline Tile tile_at(const CachePlaces& places, std::size_t i) {
     return {x, y, std::min(x + places.tile, places.width), std::min(y + places.tile, places.height), i};
 }
 
-/// The keys of a tile's pixels, row by row. Keys: fill(gbuffer, tile, key) writes them, no_cache where nothing was hit.
+/// The keys of a tile's pixels, row by row. Keys: fill(pixels, key) writes them, with room, no_cache where nothing was hit.
 template <class Keys>
-std::span<const std::uint32_t> keys_of(const GBuffer& gbuffer, const Tile& tile, const Keys& keys) {
+std::span<const std::uint32_t> keys_of(const TilePixels& pixels, const Keys& keys) {
     thread_local std::vector<std::uint32_t> key;
-    key.resize(static_cast<std::size_t>(tile.x1 - tile.x0) * (tile.y1 - tile.y0));
-    keys.fill(gbuffer, tile, key.data());
-    return key;
+    key.resize(with_room(pixels.count()));
+    keys.fill(pixels, key.data());
+    return {key.data(), pixels.count()};
 }
 
 /// How many clusters tiles of a size make, estimated from at most 128 of them spread over the picture.
@@ -37,11 +37,13 @@ double count_clusters(const GBuffer& gbuffer, int tile, const Keys& keys) {
     const std::size_t all = static_cast<std::size_t>(tiles.columns) * tiles.rows, looked_at = std::min(all, most);
     std::vector<std::size_t> found(looked_at);
     parallel_pieces(looked_at, [&](std::size_t k) {
+        thread_local TilePixels pixels;
         thread_local TileClusters clusters;
         // The golden ratio's multiples are spread evenly and in step with no row.
         const double place = static_cast<double>(k) * 0.6180339887498949;
         const auto i = all <= most ? k : static_cast<std::size_t>((place - std::floor(place)) * static_cast<double>(all));
-        found[k] = clusters.count(keys_of(gbuffer, tile_at(tiles, i), keys));
+        pixels.load(gbuffer, tile_at(tiles, i));
+        found[k] = clusters.count(keys_of(pixels, keys));
     });
     const auto sum = static_cast<double>(std::accumulate(found.begin(), found.end(), std::size_t{0}));
     return looked_at == 0 ? 0.0 : sum * static_cast<double>(all) / static_cast<double>(looked_at);
@@ -82,11 +84,14 @@ CachePlaces cluster_tiles(const GBuffer& gbuffer, int tile, const Keys& keys) {
     };
     std::vector<std::vector<Chosen>> chosen(all);
     parallel_pieces(all, [&](std::size_t i) {
+        thread_local TilePixels pixels;
         thread_local TileClusters clusters;
         const Tile at = tile_at(places, i);
-        clusters.group(gbuffer, at, keys_of(gbuffer, at, keys));
-        clusters.choose_pixels(gbuffer, at);
-        for (const auto& cluster : clusters.clusters) chosen[i].push_back({cluster.pixel, cluster.members});
+        pixels.load(gbuffer, at), pixels.load_positions(gbuffer);
+        clusters.group(pixels, keys_of(pixels, keys));
+        clusters.choose_pixels(pixels);
+        for (const auto& cluster : clusters.clusters)
+            chosen[i].push_back({static_cast<std::uint32_t>(pixels.in_picture(cluster.pixel)), cluster.members});
         const std::uint32_t* slot = clusters.slot.data();
         for (int y = at.y0; y < at.y1; ++y)
             for (int x = at.x0; x < at.x1; ++x) places.cluster[static_cast<std::size_t>(y) * places.width + x] = *slot++;

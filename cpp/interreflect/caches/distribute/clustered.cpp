@@ -3,7 +3,7 @@
 #include "caches/distribute/cluster_tiles.h"
 #include "caches/distribute/depth_slices.h"
 #include "caches/distribute/normal_axes.h"
-#include "caches/distribute/tile_kernels.h"
+#include "caches/distribute/tile_pixels.h"
 
 namespace interreflect {
 namespace {
@@ -12,27 +12,19 @@ struct AdaptedKeys {
     const NormalAxes& axes;
     DepthSlices slices;
 
-    void fill(const GBuffer& gbuffer, const Tile& tile, std::uint32_t* key) const {
-        const std::array<vec3, 3> chosen = axes_of(gbuffer, tile);
+    void fill(const TilePixels& pixels, std::uint32_t* key) const {
         thread_local std::vector<std::uint32_t> axis;
-        axis.resize(static_cast<std::size_t>(tile.x1 - tile.x0));
-        for (int y = tile.y0; y < tile.y1; ++y, key += axis.size()) {
-            const std::size_t first = static_cast<std::size_t>(y) * gbuffer.width + tile.x0;
-            slices.of(gbuffer.depth.data() + first, axis.size(), key);
-            nearest_axes(gbuffer.normal.data() + first, axis.size(), chosen, axis.data());
-            for (std::size_t x = 0; x < axis.size(); ++x) key[x] = key[x] == no_cache ? no_cache : 6 * key[x] + axis[x];
-        }
+        const std::size_t count = pixels.count();
+        axis.resize(with_room(count));
+        const std::array<vec3, 3> chosen = axes_of(pixels);
+        slices.of(pixels.depth.data(), count, key);
+        nearest_axes(pixels.normal, count, chosen, axis.data());
+        for (std::size_t i = 0; i < count; ++i) key[i] = key[i] == no_cache ? no_cache : 6 * key[i] + axis[i];
     }
-    std::array<vec3, 3> axes_of(const GBuffer& gbuffer, const Tile& tile) const {
+    std::array<vec3, 3> axes_of(const TilePixels& pixels) const {
         thread_local std::vector<float> histogram;
-        thread_local std::vector<std::uint32_t> bin;
         histogram.assign(static_cast<std::size_t>(axes.count()), 0.0f);
-        bin.resize(static_cast<std::size_t>(tile.x1 - tile.x0));
-        for (int y = tile.y0; y < tile.y1; ++y) {
-            const std::size_t first = static_cast<std::size_t>(y) * gbuffer.width + tile.x0;
-            bin_normals(gbuffer.normal.data() + first, bin.size(), axes.bins(), bin.data());
-            for (std::size_t x = 0; x < bin.size(); ++x) histogram[bin[x]] += gbuffer.hit(first + x) ? 1.0f : 0.0f;
-        }
+        count_normals(pixels.normal, pixels.depth.data(), pixels.count(), axes.bins(), histogram.data());
         return axes.choose(histogram);
     }
 };

@@ -22,15 +22,12 @@ struct CubeFaceKeys {
         const int face = 2 * axis + (n[axis] < 0.0f ? 1 : 0);
         return static_cast<std::uint32_t>((face * subdivisions + cut(n[(axis + 1) % 3])) * subdivisions + cut(n[(axis + 2) % 3]));
     }
-    void fill(const GBuffer& gbuffer, const Tile& tile, std::uint32_t* key) const {
+    void fill(const TilePixels& pixels, std::uint32_t* key) const {
         const auto cells = static_cast<std::uint32_t>(6 * subdivisions * subdivisions);
-        const auto columns = static_cast<std::size_t>(tile.x1 - tile.x0);
-        for (int y = tile.y0; y < tile.y1; ++y, key += columns) {
-            const std::size_t first = static_cast<std::size_t>(y) * gbuffer.width + tile.x0;
-            slices.of(gbuffer.depth.data() + first, columns, key);
-            for (std::size_t x = 0; x < columns; ++x)
-                if (key[x] != no_cache) key[x] = key[x] * cells + cell_of(gbuffer.normal[first + x]);
-        }
+        slices.of(pixels.depth.data(), pixels.count(), key);
+        for (std::size_t i = 0; i < pixels.count(); ++i)
+            if (key[i] != no_cache)
+                key[i] = key[i] * cells + cell_of({pixels.normal[0][i], pixels.normal[1][i], pixels.normal[2][i]});
     }
 };
 

@@ -20,7 +20,7 @@ class NormalAxes {
 
     int count() const { return bins_ * bins_; }
     int bins() const { return bins_; }
-    /// The axes of how many normals each bin (bin_normals) holds.
+    /// The axes of how many normals each bin (count_normals) holds.
     std::array<vec3, 3> choose(std::span<const float> histogram) const;
 
   private:

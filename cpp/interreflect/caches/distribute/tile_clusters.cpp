@@ -10,9 +10,11 @@ namespace interreflect {
 void TileClusters::start() {
     clusters.clear();
     table_.assign(64, none);
+    last_ = none;
 }
 
 std::uint32_t TileClusters::find(std::uint32_t key) {
+    if (last_ != none && clusters[last_].key == key) return last_;
     if (2 * clusters.size() >= table_.size()) {
         table_.assign(2 * table_.size(), none);
         for (std::size_t i = 0; i < clusters.size(); ++i) {
@@ -27,33 +29,34 @@ std::uint32_t TileClusters::find(std::uint32_t key) {
         table_[at] = static_cast<std::uint32_t>(clusters.size());
         clusters.emplace_back().key = key;
     }
-    return table_[at];
+    return last_ = table_[at];
 }
 
 // Neighbours mostly share their key: runs of one are found and added up at once.
-void TileClusters::group(const GBuffer& gbuffer, const Tile& tile, std::span<const std::uint32_t> key) {
+void TileClusters::group(const TilePixels& pixels, std::span<const std::uint32_t> key) {
     start();
-    slot.resize(key.size());
-    std::size_t at = 0;
-    for (int y = tile.y0; y < tile.y1; ++y) {
-        const std::size_t row_end = at + static_cast<std::size_t>(tile.x1 - tile.x0);
-        std::size_t pixel = static_cast<std::size_t>(y) * gbuffer.width + tile.x0;
-        while (at < row_end) {
-            const std::uint32_t shared = key[at], number = shared == none ? none : find(shared);
-            vec3 lower(std::numeric_limits<float>::infinity()), upper(-lower), normal(0);
-            const std::size_t begin = at;
-            for (; at < row_end && key[at] == shared; ++at, ++pixel) {
-                slot[at] = number;
-                const vec3& position = gbuffer.position[pixel];
-                lower = glm::min(lower, position), upper = glm::max(upper, position);
-                normal += gbuffer.normal[pixel];
-            }
-            if (number == none) continue;
-            Cluster& cluster = clusters[number];
-            cluster.members += static_cast<std::uint32_t>(at - begin);
-            cluster.lower = glm::min(cluster.lower, lower), cluster.upper = glm::max(cluster.upper, upper);
-            cluster.normal += normal;
+    slot.resize(with_room(key.size()));
+    std::fill(slot.begin() + static_cast<std::ptrdiff_t>(key.size()), slot.end(), none);
+    const auto vector_of = [](const Coordinates& of, std::size_t i) { return vec3(of[0][i], of[1][i], of[2][i]); };
+    for (std::size_t at = 0, row_end = 0; at < key.size();) {
+        if (at == row_end) row_end += pixels.rows().columns;
+        const std::size_t begin = at;
+        const std::uint32_t shared = key[at];
+        while (at < row_end && key[at] == shared) ++at;
+        const std::uint32_t number = shared == none ? none : find(shared);
+        std::fill(slot.begin() + static_cast<std::ptrdiff_t>(begin), slot.begin() + static_cast<std::ptrdiff_t>(at), number);
+        if (number == none) continue;
+        vec3 lower(std::numeric_limits<float>::infinity()), upper(-lower), normal(0);
+        for (std::size_t i = begin; i < at; ++i) {
+            const vec3 position = vector_of(pixels.position, i);
+            lower = glm::min(lower, position), upper = glm::max(upper, position);
+            normal += vector_of(pixels.normal, i);
         }
+        Cluster& cluster = clusters[number];
+        if (cluster.members == 0) cluster.pixel = static_cast<std::uint32_t>(begin);
+        cluster.members += static_cast<std::uint32_t>(at - begin);
+        cluster.lower = glm::min(cluster.lower, lower), cluster.upper = glm::max(cluster.upper, upper);
+        cluster.normal += normal;
     }
     sort();
 }
@@ -85,28 +88,18 @@ void TileClusters::sort() {
         if (one != none) one = place[one];
 }
 
-void TileClusters::choose_pixels(const GBuffer& gbuffer, const Tile& tile) {
-    if (clusters.empty()) return;
+void TileClusters::choose_pixels(const TilePixels& pixels) {
     lines_.reset(clusters.size());
+    best_.clear();
     for (std::size_t i = 0; i < clusters.size(); ++i) {
         const Cluster& cluster = clusters[i];
         const float extent = glm::length(cluster.upper - cluster.lower), length = glm::length(cluster.normal);
         lines_.set(i, 0.5f * (cluster.lower + cluster.upper), length > 0.0f ? cluster.normal / length : vec3(0),
                    extent > 0.0f ? 1.0f / extent : 0.0f);
+        best_.push_back({-std::numeric_limits<float>::infinity(), cluster.pixel});
     }
-    const auto columns = static_cast<std::size_t>(tile.x1 - tile.x0);
-    score_.resize(columns);
-    std::size_t at = 0;
-    for (int y = tile.y0; y < tile.y1; ++y) {
-        const std::size_t first = static_cast<std::size_t>(y) * gbuffer.width + tile.x0;
-        score_pixels(gbuffer.position.data() + first, gbuffer.normal.data() + first, slot.data() + at, columns, lines_,
-                     score_.data());
-        for (std::size_t x = 0; x < columns; ++x, ++at) {
-            if (slot[at] == none || score_[x] <= clusters[slot[at]].score) continue;
-            clusters[slot[at]].score = score_[x];
-            clusters[slot[at]].pixel = static_cast<std::uint32_t>(first + x);
-        }
-    }
+    best_pixels(pixels.position, pixels.normal, slot.data(), pixels.count(), lines_, best_.data());
+    for (std::size_t i = 0; i < clusters.size(); ++i) clusters[i].pixel = best_[i].pixel;
 }
 
 }  // namespace interreflect

@@ -5,10 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "caches/distribute/tile_kernels.h"
+#include "caches/distribute/tile_pixels.h"
 #include "data/caches.h"
-#include "data/gbuffer.h"
-#include "math/parallel.h"
 
 namespace interreflect {
 
@@ -17,19 +15,18 @@ class TileClusters {
     struct Cluster {
         std::uint32_t key = 0, members = 0;
         vec3 lower{std::numeric_limits<float>::infinity()}, upper{-std::numeric_limits<float>::infinity()};
-        vec3 normal{0};  // sum of its pixels'
-        float score = -std::numeric_limits<float>::infinity();
-        std::uint32_t pixel = 0;  // that stands for it
+        vec3 normal{0};           // sum of its pixels'
+        std::uint32_t pixel = 0;  // of the tile, that stands for it; before one is chosen the first
     };
 
-    /// Clusters in ascending order of their keys, and `slot` of each pixel of the tile, row by row: its cluster's number, or
-    /// `none` where nothing was hit.
+    /// Clusters in ascending order of their keys, and `slot` of each pixel of the tile, row by row, with room: its cluster's
+    /// number, or `none` where nothing was hit.
     static constexpr std::uint32_t none = no_cache;
     std::vector<Cluster> clusters;
     std::vector<std::uint32_t> slot;
 
     /// Groups the tile's pixels by `key`, row by row: any numbers, `none` where nothing was hit; without choosing pixels.
-    void group(const GBuffer& gbuffer, const Tile& tile, std::span<const std::uint32_t> key);
+    void group(const TilePixels& pixels, std::span<const std::uint32_t> key);
     /// How many different ones there are besides `none`.
     std::size_t count(std::span<const std::uint32_t> key);
     /// Of every cluster the pixel with the best score of Rehfeld et al. 2014, 3.2, "Placing Caches":
@@ -37,7 +34,7 @@ class TileClusters {
     /// with n_c the mean normal, c the centre of the box about the cluster, and d the distance of p from the line through c along
     /// n_c. Lengths are relative to e, the diagonal of that box: as printed the sum of a cosine and a length depends on the
     /// scene's unit (ERRATA).
-    void choose_pixels(const GBuffer& gbuffer, const Tile& tile);
+    void choose_pixels(const TilePixels& pixels);
 
   private:
     void start();
@@ -45,8 +42,9 @@ class TileClusters {
     void sort();
 
     std::vector<std::uint32_t> table_;  // open addressing: slots by a hash of their keys
+    std::uint32_t last_ = none;         // slot that was found, most often the next one too
     ClusterLines lines_;
-    std::vector<float> score_;
+    std::vector<BestPixel> best_;
 };
 
 }  // namespace interreflect

@@ -1,7 +1,7 @@
 #include "caches/distribute/tile_kernels.h"
 
 #include <algorithm>
-#include <cstring>
+#include <limits>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "caches/distribute/tile_kernels.cpp"
@@ -21,39 +21,81 @@ using Ints = hn::RebindToSigned<Floats>;
 using Numbers = hn::RebindToUnsigned<Floats>;
 using V = hn::Vec<Floats>;
 constexpr std::size_t most_lanes = HWY_MAX_BYTES / sizeof(float);
+static_assert(most_lanes <= most_at_once);
 
-/// The next `count` (at most a vector) of packed vectors; what is beyond them is zero.
-HWY_INLINE void load_vectors(Floats d, const vec3* from, std::size_t count, V& x, V& y, V& z) {
-    const auto* data = reinterpret_cast<const float*>(from);
-    if (count == hn::Lanes(d)) return hn::LoadInterleaved3(d, data, x, y, z);
-    float padded[3 * most_lanes] = {};
-    std::memcpy(padded, data, count * sizeof(vec3));
-    hn::LoadInterleaved3(d, padded, x, y, z);
-}
-
-template <class D>
-HWY_INLINE hn::Vec<D> load_some(D d, const hn::TFromD<D>* from, std::size_t count) {
-    if (count == hn::Lanes(d)) return hn::LoadU(d, from);
-    hn::TFromD<D> padded[most_lanes] = {};
-    std::memcpy(padded, from, count * sizeof(float));
-    return hn::LoadU(d, padded);
-}
-template <class D>
-HWY_INLINE void store_some(D d, hn::Vec<D> values, hn::TFromD<D>* to, std::size_t count) {
-    if (count == hn::Lanes(d)) return hn::StoreU(values, d, to);
-    hn::TFromD<D> padded[most_lanes];
-    hn::StoreU(values, d, padded);
-    std::memcpy(to, padded, count * sizeof(float));
-}
-
-/// Calls body(begin, count) for vector after vector of `count` items, the last one maybe shorter.
+/// Calls body(begin) for vector after vector; the last one may reach beyond.
 template <class Body>
 HWY_INLINE void each_vector(std::size_t count, const Body& body) {
     const std::size_t lanes = hn::Lanes(Floats());
-    for (std::size_t begin = 0; begin < count; begin += lanes) body(begin, std::min(lanes, count - begin));
+    for (std::size_t begin = 0; begin < count; begin += lanes) body(begin);
 }
 
-void bin_normals(const vec3* normal, std::size_t count, int bins, std::uint32_t* bin) {
+/// Calls body(data, at) for vector after vector of a rectangle's rows: `data` has as many items, whose place is `at`. What is
+/// beyond a row is written over by the next one.
+template <class Item, class Body>
+HWY_INLINE void each_in_rows(std::span<const Item> from, const Rows& rows, const Body& body) {
+    const std::size_t lanes = hn::Lanes(Floats());
+    for (std::size_t y = 0; y < rows.count; ++y)
+        for (std::size_t x = 0; x < rows.columns; x += lanes) {
+            const std::size_t begin = rows.first + y * rows.step + x;
+            if (begin + lanes <= from.size()) {
+                body(from.data() + begin, y * rows.columns + x);
+            } else {
+                Item padded[most_lanes] = {};
+                std::copy(from.begin() + static_cast<std::ptrdiff_t>(begin), from.end(), padded);
+                body(padded, y * rows.columns + x);
+            }
+        }
+}
+
+void copy_vectors(std::span<const vec3> from, const Rows& rows, Coordinates& to) {
+    const Floats d;
+    for (auto& each : to) each.resize(with_room(rows.columns * rows.count));
+    float *const to_x = to[0].data(), *const to_y = to[1].data(), *const to_z = to[2].data();
+    each_in_rows(from, rows, [&](const vec3* data, std::size_t at) HWY_ATTR {
+        V x, y, z;
+        hn::LoadInterleaved3(d, reinterpret_cast<const float*>(data), x, y, z);
+        hn::StoreU(x, d, to_x + at), hn::StoreU(y, d, to_y + at), hn::StoreU(z, d, to_z + at);
+    });
+}
+
+void copy_numbers(std::span<const float> from, const Rows& rows, std::vector<float>& to) {
+    const Floats d;
+    to.resize(with_room(rows.columns * rows.count));
+    each_in_rows(from, rows,
+                 [&](const float* data, std::size_t at) HWY_ATTR { hn::StoreU(hn::LoadU(d, data), d, to.data() + at); });
+}
+
+struct Vectors {
+    V x, y, z;
+
+    HWY_INLINE Vectors(const Coordinates& of, std::size_t begin)
+        : x(hn::LoadU(Floats(), of[0].data() + begin)),
+          y(hn::LoadU(Floats(), of[1].data() + begin)),
+          z(hn::LoadU(Floats(), of[2].data() + begin)) {}
+};
+
+/// Those of the next vector that are less than infinite.
+HWY_INLINE hn::Mask<Ints> finite(const float* depth, std::size_t left) {
+    const Floats d;
+    const V infinite = hn::Set(d, std::numeric_limits<float>::infinity());
+    const auto there = hn::FirstN(d, std::min(hn::Lanes(d), left));
+    return hn::RebindMask(Ints(), hn::And(there, hn::Lt(hn::LoadU(d, depth), infinite)));
+}
+
+/// Calls body(lanes, number) for every different number among the lanes `left`. numbers: the same in memory.
+template <class Body>
+HWY_INLINE void each_number(hn::Vec<Ints> number, const std::int32_t* numbers, hn::Mask<Ints> left, const Body& body) {
+    const Ints di;
+    while (!hn::AllFalse(di, left)) {
+        const std::int32_t shared = numbers[hn::FindKnownFirstTrue(di, left)];
+        const auto same = hn::And(left, hn::Eq(number, hn::Set(di, shared)));
+        body(same, static_cast<std::size_t>(shared));
+        left = hn::AndNot(same, left);
+    }
+}
+
+void count_normals(const Coordinates& normal, const float* depth, std::size_t count, int bins, float* histogram) {
     const Floats d;
     const Ints di;
     const V half = hn::Set(d, 0.5f), one = hn::Set(d, 1.0f), zero = hn::Zero(d);
@@ -61,25 +103,27 @@ void bin_normals(const vec3* normal, std::size_t count, int bins, std::uint32_t*
         const V at = hn::Mul(hn::MulAdd(p, half, half), hn::Set(d, static_cast<float>(bins)));
         return hn::ConvertTo(di, hn::Min(hn::Max(at, zero), hn::Set(d, static_cast<float>(bins) - 0.5f)));
     };
-    each_vector(count, [&](std::size_t begin, std::size_t some) HWY_ATTR {
-        V x, y, z;
-        load_vectors(d, normal + begin, some, x, y, z);
+    each_vector(count, [&](std::size_t begin) HWY_ATTR {
+        const auto [x, y, z] = Vectors(normal, begin);
         const V sum = hn::Add(hn::Add(hn::Abs(x), hn::Abs(y)), hn::Abs(z)), inverse = hn::Div(one, sum);
         const V px = hn::Mul(x, inverse), pz = hn::Mul(z, inverse);
         const auto lower = hn::Lt(y, zero);
         const V folded_x = hn::IfThenElse(lower, hn::CopySign(hn::Sub(one, hn::Abs(pz)), px), px);
         const V folded_z = hn::IfThenElse(lower, hn::CopySign(hn::Sub(one, hn::Abs(px)), pz), pz);
-        const auto number = hn::Add(cell(folded_x), hn::Mul(hn::Set(di, bins), cell(folded_z)));
-        store_some(Numbers(), hn::BitCast(Numbers(), number), bin + begin, some);
+        const auto bin = hn::Add(cell(folded_x), hn::Mul(hn::Set(di, bins), cell(folded_z)));
+        std::int32_t of_each[most_lanes];
+        hn::StoreU(bin, di, of_each);
+        each_number(bin, of_each, finite(depth + begin, count - begin), [&](auto same, std::size_t number) HWY_ATTR {
+            histogram[number] += static_cast<float>(hn::CountTrue(di, same));
+        });
     });
 }
 
-void nearest_axes(const vec3* normal, std::size_t count, const std::array<vec3, 3>& axes, std::uint32_t* axis) {
+void nearest_axes(const Coordinates& normal, std::size_t count, const std::array<vec3, 3>& axes, std::uint32_t* axis) {
     const Floats d;
     const Ints di;
-    each_vector(count, [&](std::size_t begin, std::size_t some) HWY_ATTR {
-        V x, y, z;
-        load_vectors(d, normal + begin, some, x, y, z);
+    each_vector(count, [&](std::size_t begin) HWY_ATTR {
+        const auto [x, y, z] = Vectors(normal, begin);
         V most = hn::Set(d, -1.0f);
         auto nearest = hn::Zero(di);
         for (int k = 0; k < 3; ++k) {
@@ -92,7 +136,7 @@ void nearest_axes(const vec3* normal, std::size_t count, const std::array<vec3, 
             nearest = hn::IfThenElse(hn::RebindMask(di, nearer), end, nearest);
             most = hn::IfThenElse(nearer, size, most);
         }
-        store_some(Numbers(), hn::BitCast(Numbers(), nearest), axis + begin, some);
+        hn::StoreU(hn::BitCast(Numbers(), nearest), Numbers(), axis + begin);
     });
 }
 
@@ -101,37 +145,56 @@ void slice_depths(const float* distance, std::size_t count, float inverse_near, 
     const Ints di;
     const V middle = hn::Set(d, static_cast<float>(1 << 20));
     const V least = hn::Set(d, 1e-37f), infinite = hn::Set(d, std::numeric_limits<float>::infinity());
-    each_vector(count, [&](std::size_t begin, std::size_t some) HWY_ATTR {
-        const V far = load_some(d, distance + begin, some);
+    each_vector(count, [&](std::size_t begin) HWY_ATTR {
+        const V far = hn::LoadU(d, distance + begin);
         const V octave = log2_of(d, hn::Max(hn::Mul(far, hn::Set(d, inverse_near)), least));
         const V number = hn::Floor(hn::Mul(octave, hn::Set(d, an_octave)));
         const auto whole = hn::ConvertTo(di, hn::Add(hn::Min(hn::Max(number, hn::Neg(middle)), middle), middle));
         const auto hit = hn::RebindMask(di, hn::Lt(far, infinite));
-        store_some(Numbers(), hn::BitCast(Numbers(), hn::IfThenElse(hit, whole, hn::Set(di, -1))), slice + begin, some);
+        hn::StoreU(hn::BitCast(Numbers(), hn::IfThenElse(hit, whole, hn::Set(di, -1))), Numbers(), slice + begin);
     });
 }
 
-void score_pixels(const vec3* position, const vec3* normal, const std::uint32_t* slot, std::size_t count,
-                  const ClusterLines& lines, float* score) {
+/// read(part, of): that part of each pixel's cluster's line.
+template <class Read>
+HWY_INLINE V scores(const Vectors& at, const Vectors& n, const Read& read) {
+    const Floats d;
+    const V one = hn::Set(d, 1.0f);
+    const V inverse = read(6), lx = read(3), ly = read(4), lz = read(5);
+    const V ax = hn::Mul(hn::Sub(at.x, read(0)), inverse), ay = hn::Mul(hn::Sub(at.y, read(1)), inverse),
+            az = hn::Mul(hn::Sub(at.z, read(2)), inverse);
+    const V out = hn::MulAdd(ax, lx, hn::MulAdd(ay, ly, hn::Mul(az, lz)));
+    const V bx = hn::NegMulAdd(lx, out, ax), by = hn::NegMulAdd(ly, out, ay), bz = hn::NegMulAdd(lz, out, az);
+    const V aside = hn::Sqrt(hn::MulAdd(bx, bx, hn::MulAdd(by, by, hn::Mul(bz, bz))));
+    const V agreement = hn::MulAdd(n.x, lx, hn::MulAdd(n.y, ly, hn::Mul(n.z, lz)));
+    return hn::Div(hn::Add(agreement, out), hn::Add(one, aside));
+}
+
+void best_pixels(const Coordinates& position, const Coordinates& normal, const std::uint32_t* slot, std::size_t count,
+                 const ClusterLines& lines, BestPixel* best) {
     const Floats d;
     const Ints di;
-    const V one = hn::Set(d, 1.0f);
-    each_vector(count, [&](std::size_t begin, std::size_t some) HWY_ATTR {
-        V x, y, z, nx, ny, nz;
-        load_vectors(d, position + begin, some, x, y, z);
-        load_vectors(d, normal + begin, some, nx, ny, nz);
-        // Pixels in no cluster (slot -1) look at the first one's line.
-        const auto of = hn::Max(hn::BitCast(di, load_some(Numbers(), slot + begin, some)), hn::Zero(di));
-        const auto read = [&](std::size_t number)
-                              HWY_ATTR { return hn::GatherIndex(d, lines.of.data() + number * lines.size, of); };
-        const V inverse = read(6), lx = read(3), ly = read(4), lz = read(5);
-        const V ax = hn::Mul(hn::Sub(x, read(0)), inverse), ay = hn::Mul(hn::Sub(y, read(1)), inverse),
-                az = hn::Mul(hn::Sub(z, read(2)), inverse);
-        const V out = hn::MulAdd(ax, lx, hn::MulAdd(ay, ly, hn::Mul(az, lz)));
-        const V bx = hn::NegMulAdd(lx, out, ax), by = hn::NegMulAdd(ly, out, ay), bz = hn::NegMulAdd(lz, out, az);
-        const V aside = hn::Sqrt(hn::MulAdd(bx, bx, hn::MulAdd(by, by, hn::Mul(bz, bz))));
-        const V agreement = hn::MulAdd(nx, lx, hn::MulAdd(ny, ly, hn::Mul(nz, lz)));
-        store_some(d, hn::Div(hn::Add(agreement, out), hn::Add(one, aside)), score + begin, some);
+    const V least = hn::Neg(hn::Set(d, std::numeric_limits<float>::infinity()));
+    const bool one_vector = lines.size <= hn::Lanes(d) + most_at_once;  // holds all clusters
+    each_vector(count, [&](std::size_t begin) HWY_ATTR {
+        const auto number = hn::BitCast(di, hn::LoadU(Numbers(), slot + begin));
+        const auto in_one = hn::And(hn::Gt(number, hn::Set(di, -1)), hn::FirstN(di, std::min(hn::Lanes(d), count - begin)));
+        if (hn::AllFalse(di, in_one)) return;
+        const auto of = hn::IfThenElseZero(in_one, number);
+        const auto read = [&](std::size_t part) HWY_ATTR {
+            const float* from = lines.of.data() + part * lines.size;
+            return one_vector ? hn::TableLookupLanes(hn::LoadU(d, from), hn::IndicesFromVec(d, of))
+                              : hn::GatherIndex(d, from, of);
+        };
+        const V score = scores(Vectors(position, begin), Vectors(normal, begin), read);
+        const auto* slots = reinterpret_cast<const std::int32_t*>(slot + begin);
+        each_number(number, slots, in_one, [&](auto same, std::size_t shared) HWY_ATTR {
+            const auto better = hn::And(hn::RebindMask(d, same), hn::Gt(score, hn::Set(d, best[shared].score)));
+            if (hn::AllFalse(d, better)) return;
+            const V most = hn::MaxOfLanes(d, hn::IfThenElse(better, score, least));
+            const std::size_t first = hn::FindKnownFirstTrue(d, hn::And(better, hn::Eq(score, most)));
+            best[shared] = {hn::GetLane(most), static_cast<std::uint32_t>(begin + first)};
+        });
     });
 }
 
@@ -142,23 +205,31 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace interreflect {
 
-HWY_EXPORT(bin_normals);
+HWY_EXPORT(copy_vectors);
+HWY_EXPORT(copy_numbers);
+HWY_EXPORT(count_normals);
 HWY_EXPORT(nearest_axes);
 HWY_EXPORT(slice_depths);
-HWY_EXPORT(score_pixels);
+HWY_EXPORT(best_pixels);
 
-void bin_normals(const vec3* normal, std::size_t count, int bins, std::uint32_t* bin) {
-    HWY_DYNAMIC_DISPATCH(bin_normals)(normal, count, bins, bin);
+void copy_vectors(std::span<const vec3> from, const Rows& rows, Coordinates& to) {
+    HWY_DYNAMIC_DISPATCH(copy_vectors)(from, rows, to);
 }
-void nearest_axes(const vec3* normal, std::size_t count, const std::array<vec3, 3>& axes, std::uint32_t* axis) {
+void copy_numbers(std::span<const float> from, const Rows& rows, std::vector<float>& to) {
+    HWY_DYNAMIC_DISPATCH(copy_numbers)(from, rows, to);
+}
+void count_normals(const Coordinates& normal, const float* depth, std::size_t count, int bins, float* histogram) {
+    HWY_DYNAMIC_DISPATCH(count_normals)(normal, depth, count, bins, histogram);
+}
+void nearest_axes(const Coordinates& normal, std::size_t count, const std::array<vec3, 3>& axes, std::uint32_t* axis) {
     HWY_DYNAMIC_DISPATCH(nearest_axes)(normal, count, axes, axis);
 }
 void slice_depths(const float* distance, std::size_t count, float inverse_near, float an_octave, std::uint32_t* slice) {
     HWY_DYNAMIC_DISPATCH(slice_depths)(distance, count, inverse_near, an_octave, slice);
 }
-void score_pixels(const vec3* position, const vec3* normal, const std::uint32_t* slot, std::size_t count,
-                  const ClusterLines& lines, float* score) {
-    HWY_DYNAMIC_DISPATCH(score_pixels)(position, normal, slot, count, lines, score);
+void best_pixels(const Coordinates& position, const Coordinates& normal, const std::uint32_t* slot, std::size_t count,
+                 const ClusterLines& lines, BestPixel* best) {
+    HWY_DYNAMIC_DISPATCH(best_pixels)(position, normal, slot, count, lines, best);
 }
 
 }  // namespace interreflect
