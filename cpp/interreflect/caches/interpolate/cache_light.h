@@ -20,6 +20,12 @@ struct CacheSum {
     vec4 diffuse{0}, glossy{0};          // mean radiance over the lobe, and how open it is
     vec3 diffuse_sky{0}, glossy_sky{0};  // mean radiance of an environment image over it
     float weight = 0;
+
+    void add(const CacheSum& one, float by) {
+        diffuse += one.diffuse * by, glossy += one.glossy * by;
+        diffuse_sky += one.diffuse_sky * by, glossy_sky += one.glossy_sky * by;
+        weight += by;
+    }
 };
 
 /// Not yet written.

@@ -70,12 +70,11 @@ CacheLight interpolate(const Gather& technique, const ConvolvedCaches* caches, c
         clear_light(block, light);
         viewer.look(block, views);
         if (views.count == 0) return;
-        sums.clear(views.count);
         if (hierarchy)
             caches_near(*hierarchy, views, near);
         else
             caches_near(places, block, weights.screen_radius(), near);
-        for (const std::uint32_t cache : near) served[block.index].evaluations += summer.add(cache, views, sums);
+        served[block.index].evaluations = summer.sum(near, views, sums);
         finish_pixels(*caches, views, sums, light, served[block.index]);
     });
     light_uncovered(technique, *caches, gbuffer, scene, own, served, light);

@@ -38,11 +38,11 @@ struct Splats {
     }
 };
 
-/// Pixels as the splats meet them, and what they have added.
+/// Pixels, and the caches that are splatted onto them.
 struct Block {
     Tile tile;
     PixelViews views;
-    CacheSums sums;
+    std::vector<std::uint32_t> splats;
 };
 
 /// Those of a bin that see something.
@@ -55,7 +55,7 @@ std::size_t look(const PixelViewer& viewer, const Tile& bin, std::vector<Block>&
             block.tile = {x, y, std::min(x + block_size, bin.x1), std::min(y + block_size, bin.y1), 0};
             clear_light(block.tile, light);
             viewer.look(block.tile, block.views);
-            block.sums.clear(block.views.count);
+            block.splats.clear();
             if (block.views.count > 0) ++count;
         }
     return count;
@@ -77,14 +77,17 @@ CacheLight interpolate(const Splat& technique, const ConvolvedCaches* caches, co
     std::vector<Served> served(tile_count(gbuffer.width, gbuffer.height, bin_size));
     parallel_tiles(gbuffer.width, gbuffer.height, bin_size, [&](const Tile& bin) {
         thread_local std::vector<Block> blocks;
+        thread_local CacheSums sums;
         const std::size_t count = look(viewer, bin, blocks, light);
         for (std::size_t cache = 0; cache < places.size(); ++cache) {
             if (!splats.reach_into(cache, bin)) continue;
             for (std::size_t i = 0; i < count; ++i)
-                if (splats.reach_into(cache, blocks[i].tile))
-                    served[bin.index].evaluations += summer.add(cache, blocks[i].views, blocks[i].sums);
+                if (splats.reach_into(cache, blocks[i].tile)) blocks[i].splats.push_back(static_cast<std::uint32_t>(cache));
         }
-        for (std::size_t i = 0; i < count; ++i) finish_pixels(*caches, blocks[i].views, blocks[i].sums, light, served[bin.index]);
+        for (std::size_t i = 0; i < count; ++i) {
+            served[bin.index].evaluations += summer.sum(blocks[i].splats, blocks[i].views, sums);
+            finish_pixels(*caches, blocks[i].views, sums, light, served[bin.index]);
+        }
     });
     light_uncovered(technique, *caches, gbuffer, scene, own, served, light);
     return light;

@@ -1,8 +1,8 @@
 #include "caches/interpolate/sum_caches.h"
 
 #include <algorithm>
-#include <bit>
 #include <cstring>
+#include <vector>
 
 #include "caches/interpolate/cache_reader.h"
 
@@ -15,22 +15,13 @@
 
 #include "caches/interpolate/map_lanes-inl.h"
 
-// Roofline, for a vector of sixteen pixels that one cache reaches: the weight 20 operations; where its maps are looked at 60,
-// kept while the caches share their normal; a table of up to 64 texels in registers 60, each of two levels of up to 32 texels 45.
-// Some 100 cycles, all of it arithmetic and permutations within the first cache; of levels with more than 64 texels each lane
-// loads its own.
+// Roofline, for a vector of sixteen pixels that one cache reaches: the weight 25 operations; where its maps are looked at 60,
+// kept while the caches share their normal; each of three maps (the table, two levels) 20 for the corners' weights and 30 for
+// every cell that the pixels look into, most often one. Some 80 cycles, all of it arithmetic within the first cache.
 HWY_BEFORE_NAMESPACE();
 namespace interreflect {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
-
-/// The vectors that a cache reaches, and the weights in them.
-struct Reached {
-    alignas(64) float weight[PixelViews::capacity];
-    std::uint16_t first[PixelViews::capacity];  // lane of each vector
-    int vectors = 0;
-    std::uint64_t pixels = 0;
-};
 
 HWY_INLINE Vec3 load(const float (*from)[PixelViews::capacity], int i) {
     const Tag d;
@@ -48,7 +39,7 @@ struct WeightLanes {
 
     explicit HWY_INLINE WeightLanes(const CacheWeights::Terms& cache)
         : position(everywhere(cache.position)),
-          normal(everywhere(cache.normal)),
+          normal(everywhere(cache.frame.normal)),
           column(hn::Set(Tag(), cache.screen.x)),
           row(hn::Set(Tag(), cache.screen.y)),
           world(hn::Set(Tag(), cache.world_inverse)),
@@ -91,98 +82,136 @@ HWY_INLINE std::uint32_t groups_within(const WeightLanes& cache, const PixelView
     return groups;
 }
 
-HWY_INLINE void reach(const CacheWeights::Terms& terms, const PixelViews& views, CacheSums& sums, Reached& reached) {
-    const Tag d;
-    const Vector zero = hn::Zero(d), one = hn::Set(d, 1.0f);
-    const WeightLanes cache(terms);
-    const int lanes = static_cast<int>(hn::Lanes(d));
-    const auto add = [&](int i) HWY_ATTR {
-        const Vec3 at = load(views.position, i),
-                   away{hn::Sub(at.x, cache.position.x), hn::Sub(at.y, cache.position.y), hn::Sub(at.z, cache.position.z)};
-        const Vector near = cache.near(away, hn::Sub(hn::Load(d, views.screen[0] + i), cache.column),
-                                       hn::Sub(hn::Load(d, views.screen[1] + i), cache.row));
-        const Vector agreement = cache.agreement(load(views.normal, i));
-        const Vector weight = hn::Mul(near, hn::Min(agreement, one));
+/// Caches that reach a vector of pixels: their weights, and where the pixels' lobes look in maps that stand upright on them.
+struct Reached {
+    static constexpr int capacity = Looks::capacity, most = hn::MaxLanes(Tag());
+    int count = 0;
+    std::uint32_t cache[capacity];
+    alignas(64) float weight[capacity][most], diffuse[capacity][2][most], glossy[capacity][2][most];
+};
+
+HWY_INLINE void store(const Square& square, float (*to)[Reached::most]) {
+    hn::Store(square.x, Tag(), to[0]), hn::Store(square.y, Tag(), to[1]);
+}
+HWY_INLINE Square load_square(const float (*from)[Reached::most]) { return {hn::Load(Tag(), from[0]), hn::Load(Tag(), from[1])}; }
+
+/// A vector of pixels, and what caches have added for them.
+class PixelLanes {
+  public:
+    HWY_INLINE PixelLanes(const PixelViews& views, int first)
+        : position_(load(views.position, first)),
+          normal_(load(views.normal, first)),
+          direction_(load(views.direction, first)),
+          column_(hn::Load(Tag(), views.screen[0] + first)),
+          row_(hn::Load(Tag(), views.screen[1] + first)),
+          weight_(hn::Zero(Tag())) {}
+
+    /// Notes a cache that reaches some of the pixels; returns how many.
+    HWY_INLINE std::size_t reach(std::uint32_t number, const CacheWeights::Terms& terms, bool glossy, Reached& reached) {
+        const Tag d;
+        const Vector zero = hn::Zero(d), one = hn::Set(d, 1.0f);
+        const WeightLanes cache(terms);
+        const Vec3 away{hn::Sub(position_.x, cache.position.x), hn::Sub(position_.y, cache.position.y),
+                        hn::Sub(position_.z, cache.position.z)};
+        const Vector near = cache.near(away, hn::Sub(column_, cache.column), hn::Sub(row_, cache.row));
+        const Vector agreement = cache.agreement(normal_);
         const auto within = hn::And(hn::Gt(near, zero), hn::Gt(agreement, zero));
-        if (hn::AllFalse(d, within)) return;
-        const Vector kept = hn::IfThenElseZero(within, weight);
-        hn::Store(kept, d, reached.weight + i);
-        hn::Store(hn::Add(hn::Load(d, sums.weight + i), kept), d, sums.weight + i);
-        reached.pixels += hn::CountTrue(d, within);
-        reached.first[reached.vectors++] = static_cast<std::uint16_t>(i);
+        if (hn::AllFalse(d, within)) return 0;
+        const Vector weight = hn::IfThenElseZero(within, hn::Mul(near, hn::Min(agreement, one)));
+        weight_ = hn::Add(weight_, weight);
+        find_places(terms.frame, glossy);
+        const int i = reached.count++;
+        reached.cache[i] = number;
+        hn::Store(weight, d, reached.weight[i]);
+        store(diffuse_, reached.diffuse[i]);
+        if (glossy) store(glossy_, reached.glossy[i]);
+        return hn::CountTrue(d, within);
+    }
+    HWY_INLINE Vector weight() const { return weight_; }
+
+  private:
+    HWY_INLINE void find_places(const Frame& frame, bool glossy) {
+        // Bit by bit: the frame about a normal depends on the sign of its zeros.
+        if (std::memcmp(&places_about_, &frame.normal, sizeof(vec3)) == 0) return;
+        places_about_ = frame.normal;
+        const Vec3 x = everywhere(frame.tangent), y = everywhere(frame.bitangent), z = everywhere(frame.normal);
+        diffuse_ = hemisphere_square_lanes({dot(normal_, x), dot(normal_, y), dot(normal_, z)});
+        if (glossy) glossy_ = hemisphere_square_lanes({dot(direction_, x), dot(direction_, y), dot(direction_, z)});
+    }
+
+    Vec3 position_, normal_, direction_;
+    Vector column_, row_;
+    vec3 places_about_{0};
+    Square diffuse_, glossy_;
+    Vector weight_;
+};
+
+/// Adds one layer of the caches that reach the vector of pixels at `first`.
+void add_layer(const ConvolvedCaches& caches, const Buffer<std::uint16_t>& filled, const ConvolvedCaches::Layer& layer,
+               const Reached& reached, const PixelViews& views, int first, float (*diffuse)[CacheSums::capacity],
+               float (*glossy)[CacheSums::capacity]) {
+    const Tag d;
+    const auto add = [&](Looks& looks, float(*to)[CacheSums::capacity]) HWY_ATTR {
+        Vector sum[4];
+        for (int c = 0; c < 4; ++c) sum[c] = hn::Load(d, to[c] + first);
+        looks.add_to(sum);
+        for (int c = 0; c < 4; ++c) hn::Store(sum[c], d, to[c] + first);
     };
-    for (std::uint32_t groups = groups_within(cache, views); groups != 0; groups &= groups - 1) {
-        const int first = std::countr_zero(groups) * PixelViews::group;
-        for (int i = first; i < std::min(first + PixelViews::group, views.count); i += lanes) add(i);
+    Looks table(caches.table_size);
+    for (int k = 0; k < reached.count; ++k)
+        table.look(LayerMaps(caches, filled, layer, reached.cache[k]).table, load_square(reached.diffuse[k]),
+                   hn::Load(d, reached.weight[k]));
+    add(table, diffuse);
+    for (int level = views.finest; level <= views.coarsest; ++level) {
+        const Vector off = hn::AbsDiff(hn::Load(d, views.level + first), hn::Set(d, static_cast<float>(level)));
+        const Vector share = hn::Max(hn::Sub(hn::Set(d, 1.0f), off), hn::Zero(d));
+        if (hn::AllFalse(d, hn::Gt(share, hn::Zero(d)))) continue;
+        Looks looks(caches.level_sizes[static_cast<std::size_t>(level)]);
+        for (int k = 0; k < reached.count; ++k)
+            looks.look(LayerMaps(caches, filled, layer, reached.cache[k]).level(level), load_square(reached.glossy[k]),
+                       hn::Mul(hn::Load(d, reached.weight[k]), share));
+        add(looks, glossy);
     }
 }
 
-HWY_INLINE void find_places(const vec3& normal, bool glossy, const PixelViews& views, const Reached& reached,
-                            CacheSums::Places& places) {
+/// The sums of the vector of pixels at `first`; returns how many of them the caches reach.
+std::uint64_t add_to_lanes(const ConvolvedCaches& caches, const CacheWeights& weights, std::span<const std::uint32_t> near,
+                           const PixelViews& views, int first, CacheSums& sums) {
     const Tag d;
-    const int lanes = static_cast<int>(hn::Lanes(d));
-    // Bit by bit: the frame about a normal depends on the sign of its zeros.
-    if (std::memcmp(&places.normal, &normal, sizeof(vec3)) != 0) places.known = 0, places.normal = normal;
-    const Frame frame(normal);
-    const Vec3 x = everywhere(frame.tangent), y = everywhere(frame.bitangent), z = everywhere(normal);
-    const auto place = [&](const Vec3& direction, float(*to)[CacheSums::capacity], int i) HWY_ATTR {
-        const Square square = hemisphere_square_lanes({dot(direction, x), dot(direction, y), dot(direction, z)});
-        hn::Store(square.x, d, to[0] + i);
-        hn::Store(square.y, d, to[1] + i);
-    };
-    for (int k = 0; k < reached.vectors; ++k) {
-        const int i = reached.first[k];
-        const std::uint64_t bit = std::uint64_t{1} << (i / lanes);
-        if ((places.known & bit) != 0) continue;
-        places.known |= bit;
-        place(load(views.normal, i), places.diffuse, i);
-        if (glossy) place(load(views.direction, i), places.glossy, i);
-    }
-}
-
-/// Adds an n x n map's texels at the places, times the weights and `share(i)` of the vector at i.
-template <class Share>
-HWY_INLINE void add_map(const std::uint16_t* texels, int n, const float (*at)[CacheSums::capacity], const Reached& reached,
-                        float (*sums)[CacheSums::capacity], const Share& share) {
-    const Tag d;
-    with_texels(texels, n, [&](const auto& map) HWY_ATTR {
-        for (int k = 0; k < reached.vectors; ++k) {
-            const int i = reached.first[k];
-            const Vector weight = hn::Mul(hn::Load(d, reached.weight + i), share(i));
-            if (hn::AllFalse(d, hn::Gt(weight, hn::Zero(d)))) continue;
-            const Corners corners(hn::Load(d, at[0] + i), hn::Load(d, at[1] + i), n, weight);
-            Vector sum[4];
-            for (int c = 0; c < 4; ++c) sum[c] = hn::Load(d, sums[c] + i);
-            map.add(corners, sum);
-            for (int c = 0; c < 4; ++c) hn::Store(sum[c], d, sums[c] + i);
-        }
-    });
-}
-
-std::uint64_t add_cache(const ConvolvedCaches& caches, std::size_t cache, const CacheWeights::Terms& terms,
-                        const PixelViews& views, CacheSums& sums) {
-    const Tag d;
+    const bool image = !caches.filled->sky.empty();
+    for (auto* sum : {sums.diffuse, sums.glossy, sums.diffuse_sky, sums.glossy_sky})
+        for (int c = 0; c < 4; ++c) hn::Store(hn::Zero(d), d, sum[c] + first);
+    PixelLanes lanes(views, first);
+    std::uint64_t pixels = 0;
     Reached reached;
-    reach(terms, views, sums, reached);
-    if (reached.vectors == 0) return 0;
-    find_places(terms.normal, views.coarsest >= 0, views, reached, sums.places);
-    const auto add_layer = [&](const Buffer<std::uint16_t>& filled, const ConvolvedCaches::Layer& layer,
-                               float(*diffuse)[CacheSums::capacity], float(*glossy)[CacheSums::capacity]) HWY_ATTR {
-        const LayerMaps maps(caches, filled, layer, cache);
-        add_map(maps.table, caches.table_size, sums.places.diffuse, reached, diffuse,
-                [d](int) HWY_ATTR { return hn::Set(d, 1.0f); });
-        for (int level = views.finest; level <= views.coarsest; ++level) {
-            const Vector number = hn::Set(d, static_cast<float>(level));
-            add_map(maps.level(level), caches.level_sizes[static_cast<std::size_t>(level)], sums.places.glossy, reached, glossy,
-                    [&](int i) HWY_ATTR {
-                        const Vector off = hn::AbsDiff(hn::Load(d, views.level + i), number);
-                        return hn::Max(hn::Sub(hn::Set(d, 1.0f), off), hn::Zero(d));
-                    });
-        }
+    const auto add = [&]() HWY_ATTR {
+        add_layer(caches, caches.filled->texels, caches.light, reached, views, first, sums.diffuse, sums.glossy);
+        if (image) add_layer(caches, caches.filled->sky, caches.sky, reached, views, first, sums.diffuse_sky, sums.glossy_sky);
+        reached.count = 0;
     };
-    add_layer(caches.filled->texels, caches.light, sums.diffuse, sums.glossy);
-    if (!caches.filled->sky.empty()) add_layer(caches.filled->sky, caches.sky, sums.diffuse_sky, sums.glossy_sky);
-    return reached.pixels;
+    for (const std::uint32_t cache : near) {
+        pixels += lanes.reach(cache, weights.of(cache), views.coarsest >= 0, reached);
+        if (reached.count == Reached::capacity) add();
+    }
+    if (reached.count > 0) add();
+    hn::Store(lanes.weight(), d, sums.weight + first);
+    return pixels;
+}
+
+std::uint64_t add_caches(const ConvolvedCaches& caches, const CacheWeights& weights, std::span<const std::uint32_t> near,
+                         const PixelViews& views, CacheSums& sums) {
+    thread_local std::vector<std::uint32_t> groups, reaching;
+    groups.resize(near.size()), reaching.resize(near.size());
+    for (std::size_t k = 0; k < near.size(); ++k) groups[k] = groups_within(WeightLanes(weights.of(near[k])), views);
+    std::uint64_t pixels = 0;
+    for (int g = 0; g * PixelViews::group < views.count; ++g) {
+        std::size_t count = 0;
+        for (std::size_t k = 0; k < near.size(); ++k) reaching[count] = near[k], count += groups[k] >> g & 1;
+        const int end = std::min((g + 1) * PixelViews::group, views.count);
+        for (int i = g * PixelViews::group; i < end; i += static_cast<int>(hn::Lanes(Tag())))
+            pixels += add_to_lanes(caches, weights, std::span(reaching).first(count), views, i, sums);
+    }
+    return pixels;
 }
 
 }  // namespace HWY_NAMESPACE
@@ -193,29 +222,31 @@ HWY_AFTER_NAMESPACE();
 namespace interreflect {
 namespace {
 
-HWY_EXPORT(add_cache);
+HWY_EXPORT(add_caches);
 
 /// Lobes that are sampled are read one by one.
-std::uint64_t add_samples(const CacheReader& reader, const CacheWeights& weights, std::size_t cache, const PixelViews& views,
-                          CacheSums& sums) {
+std::uint64_t add_samples(const CacheReader& reader, const CacheWeights& weights, std::span<const std::uint32_t> near,
+                          const PixelViews& views, CacheSums& sums) {
     std::uint64_t pixels = 0;
     for (int i = 0; i < views.count; ++i) {
         const PixelViews::View view = views.view(i);
-        const float weight = weights.weight(cache, view);
-        if (!(weight > 0.0f)) continue;
-        sums.add(i, reader.read(cache, view), weight);
-        ++pixels;
+        CacheSum sum;
+        for (const std::uint32_t cache : near) {
+            const float weight = weights.weight(cache, view);
+            if (!(weight > 0.0f)) continue;
+            sum.add(reader.read(cache, view), weight);
+            ++pixels;
+        }
+        sums.set(i, sum);
     }
     return pixels;
 }
 
 }  // namespace
 
-std::uint64_t CacheSummer::add(std::size_t cache, const PixelViews& views, CacheSums& sums) const {
-    const CacheWeights::Terms terms = weights_.of(cache);
-    if (!terms.reaches) return 0;
-    if (caches_.samples > 0) return add_samples(CacheReader(caches_, gbuffer_, scene_), weights_, cache, views, sums);
-    return HWY_DYNAMIC_DISPATCH(add_cache)(caches_, cache, terms, views, sums);
+std::uint64_t CacheSummer::sum(std::span<const std::uint32_t> near, const PixelViews& views, CacheSums& sums) const {
+    if (caches_.samples > 0) return add_samples(CacheReader(caches_, gbuffer_, scene_), weights_, near, views, sums);
+    return HWY_DYNAMIC_DISPATCH(add_caches)(caches_, weights_, near, views, sums);
 }
 
 }  // namespace interreflect

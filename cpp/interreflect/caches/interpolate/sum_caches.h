@@ -1,18 +1,20 @@
 /// The weighted sums of what caches hold for pixels.
 #pragma once
+#include <span>
+
 #include "caches/interpolate/cache_sums.h"
 #include "caches/interpolate/weights.h"
 
 namespace interreflect {
 
-/// Adds caches to the sums of pixels, one cache at a time: what CacheReader reads, times the weight.
+/// Sums up what CacheReader reads, times the weights.
 class CacheSummer {
   public:
     CacheSummer(const ConvolvedCaches& caches, const CacheWeights& weights, const GBuffer& gbuffer, const Scene& scene)
         : caches_(caches), weights_(weights), gbuffer_(gbuffer), scene_(scene) {}
 
-    /// Returns how many of the pixels the cache reaches.
-    std::uint64_t add(std::size_t cache, const PixelViews& views, CacheSums& sums) const;
+    /// Of some caches, one after another; returns how many pixels they reach, each counted anew by every cache.
+    std::uint64_t sum(std::span<const std::uint32_t> near, const PixelViews& views, CacheSums& sums) const;
 
   private:
     const ConvolvedCaches& caches_;

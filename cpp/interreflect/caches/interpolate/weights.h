@@ -36,48 +36,34 @@ struct WeightKnobs {
 /// at the largest angle [Scherzer et al. 2012], so that no weight ends with an edge.
 class CacheWeights {
   public:
-    CacheWeights(const WeightKnobs& knobs, const CachePlaces& places, bool world_alone)
-        : places_(places),
-          world_radius_(static_cast<float>(knobs.world_radius)),
-          screen_radius_(world_alone ? std::numeric_limits<float>::infinity()
-                                     : static_cast<float>(knobs.radius) * static_cast<float>(places.tile)),
-          least_cosine_(std::cos(static_cast<float>(knobs.max_angle) * degrees_to_radians)) {}
+    CacheWeights(const WeightKnobs& knobs, const CachePlaces& places, bool world_alone);
 
     /// Pixels; infinite where the screen does not matter.
     float screen_radius() const { return screen_radius_; }
     float world_radius(std::size_t cache) const { return world_radius_ * places_.footprint[cache]; }
 
-    /// One cache's: 1 - squared distance * inverse, and cosine * slope + start.
+    /// One cache's: 1 - squared distance * inverse, and cosine * slope + start. Both fall short everywhere for one without reach.
     struct Terms {
-        vec3 position, normal;
+        Frame frame;  // about its normal
+        vec3 position;
         vec2 screen;
         float world_inverse, screen_inverse, slope, start;
-        bool reaches;  // any pixel at all
     };
-    Terms of(std::size_t cache) const {
-        const float world = world_radius(cache), slope = 1.0f / std::max(1.0f - least_cosine_, 1e-7f);
-        return {places_.position[cache],
-                places_.normal[cache],
-                places_.screen[cache],
-                1.0f / (world * world),
-                1.0f / (screen_radius_ * screen_radius_),
-                slope,
-                -least_cosine_ * slope,
-                world > 0.0f && screen_radius_ > 0.0f};
-    }
+    const Terms& of(std::size_t cache) const { return terms_[cache]; }
     float weight(std::size_t cache, const PixelViews::View& view) const {
-        const Terms terms = of(cache);
+        const Terms& terms = of(cache);
         const vec3 away = view.position - terms.position;
         const vec2 aside = view.screen - terms.screen;
         const float weight =
             std::min(1.0f - glm::dot(away, away) * terms.world_inverse, 1.0f - glm::dot(aside, aside) * terms.screen_inverse);
-        const float agreement = glm::dot(view.normal, terms.normal) * terms.slope + terms.start;
-        return terms.reaches ? std::max(weight, 0.0f) * std::clamp(agreement, 0.0f, 1.0f) : 0.0f;
+        const float agreement = glm::dot(view.normal, terms.frame.normal) * terms.slope + terms.start;
+        return std::max(weight, 0.0f) * std::clamp(agreement, 0.0f, 1.0f);
     }
 
   private:
     const CachePlaces& places_;
-    float world_radius_, screen_radius_, least_cosine_;
+    float world_radius_, screen_radius_;
+    Buffer<Terms> terms_;
 };
 
 }  // namespace interreflect
