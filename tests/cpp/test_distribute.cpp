@@ -71,6 +71,17 @@ TEST(TileKernels, CountTheNormalsInEachBinOfTheOctahedralMap) {
     EXPECT_EQ(histogram_of(normals, depth), expected);
 }
 
+TEST(TileKernels, FindTheFirstOfTheLargestNumbers) {
+    Rng rng(11, 1);
+    for (std::size_t count = 1; count < 70; ++count) {
+        std::vector<float> numbers(count);
+        for (float& number : numbers) number = std::floor(4.0f * rng.uniform());
+        const auto first = std::max_element(numbers.begin(), numbers.end()) - numbers.begin();
+        numbers.resize(with_room(count), 9.0f);
+        EXPECT_EQ(first_largest(numbers.data(), count), static_cast<std::size_t>(first));
+    }
+}
+
 TEST(TileKernels, TellTheTwoEndsOfAnAxisApart) {
     const std::array<vec3, 3> axes = {vec3(1, 0, 0), vec3(0, 1, 0), vec3(0, 0, 1)};
     for (int k = 0; k < 3; ++k) {

@@ -2,7 +2,6 @@
 #pragma once
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <span>
 #include <vector>
 
@@ -29,13 +28,17 @@ std::span<const std::uint32_t> keys_of(const TilePixels& pixels, const Keys& key
     return {key.data(), pixels.count()};
 }
 
+struct ClusterEstimate {
+    double count = 0, error = 0;  // error: standard, relative; 0 where every tile was looked at
+};
+
 /// How many clusters tiles of a size make, estimated from at most 128 of them spread over the picture.
 template <class Keys>
-double count_clusters(const GBuffer& gbuffer, int tile, const Keys& keys) {
+ClusterEstimate estimate_clusters(const GBuffer& gbuffer, int tile, const Keys& keys) {
     constexpr std::size_t most = 128;
     const CachePlaces tiles = tiles_of(gbuffer, tile);
     const std::size_t all = static_cast<std::size_t>(tiles.columns) * tiles.rows, looked_at = std::min(all, most);
-    std::vector<std::size_t> found(looked_at);
+    std::vector<double> found(looked_at);
     parallel_pieces(looked_at, [&](std::size_t k) {
         thread_local TilePixels pixels;
         thread_local TileClusters clusters;
@@ -43,10 +46,13 @@ double count_clusters(const GBuffer& gbuffer, int tile, const Keys& keys) {
         const double place = static_cast<double>(k) * 0.6180339887498949;
         const auto i = all <= most ? k : static_cast<std::size_t>((place - std::floor(place)) * static_cast<double>(all));
         pixels.load(gbuffer, tile_at(tiles, i));
-        found[k] = clusters.count(keys_of(pixels, keys));
+        found[k] = static_cast<double>(clusters.count(keys_of(pixels, keys)));
     });
-    const auto sum = static_cast<double>(std::accumulate(found.begin(), found.end(), std::size_t{0}));
-    return looked_at == 0 ? 0.0 : sum * static_cast<double>(all) / static_cast<double>(looked_at);
+    double sum = 0, squares = 0;
+    for (const double one : found) sum += one, squares += one * one;
+    if (sum == 0.0) return {};
+    const double n = static_cast<double>(looked_at), unseen = 1.0 - n / static_cast<double>(all);
+    return {sum / n * static_cast<double>(all), std::sqrt(unseen * std::max(n * squares / (sum * sum) - 1.0, 0.0) / n)};
 }
 
 /// A tile's side whose clusters are near `target`: fewer clusters for larger tiles, by a power of their side that is learned on
@@ -54,16 +60,17 @@ double count_clusters(const GBuffer& gbuffer, int tile, const Keys& keys) {
 template <class MakeKeys>
 int find_tile(const GBuffer& gbuffer, int target, const MakeKeys& make) {
     constexpr int most_probes = 8;
-    constexpr double near_enough = 0.02;                                 // the count is an estimate
+    constexpr double near_enough = 0.02;
     int below = 0, above = std::max(gbuffer.width, gbuffer.height) + 1;  // sides with too many clusters, and with too few
     double side = std::sqrt(4.0 * static_cast<double>(gbuffer.pixels()) / target), power = 1.5;
     int best = 1, last = 0;
     double least = std::numeric_limits<double>::infinity(), last_excess = 0;
     for (int probe = 0; probe < most_probes && above - below > 1; ++probe) {
         const int tile = static_cast<int>(std::clamp(std::round(side), below + 1.0, above - 1.0));
-        const double count = count_clusters(gbuffer, tile, make(tile)), excess = std::log(std::max(count, 0.5) / target);
+        const ClusterEstimate found = estimate_clusters(gbuffer, tile, make(tile));
+        const double excess = std::log(std::max(found.count, 0.5) / target);
         if (std::fabs(excess) < least) least = std::fabs(excess), best = tile;
-        if (least < near_enough) break;
+        if (least < std::max(near_enough, 0.5 * found.error)) break;  // nearer ones would be so by chance
         (excess > 0.0 ? below : above) = tile;
         if (last > 0) power = std::clamp((last_excess - excess) / std::log(static_cast<double>(tile) / last), 0.5, 2.5);
         last = tile, last_excess = excess;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "caches/distribute/tile_kernels.h"
+
 namespace interreflect {
 
 NormalAxes::NormalAxes(int bins, float smoothing, float exponent) : bins_(bins) {
@@ -29,16 +31,16 @@ NormalAxes::NormalAxes(int bins, float smoothing, float exponent) : bins_(bins) 
 std::array<vec3, 3> NormalAxes::choose(std::span<const float> histogram) const {
     const auto n = directions_.size();
     thread_local std::vector<float> rating;
-    rating.assign(n, 0.0f);
+    rating.assign(with_room(n), 0.0f);
     for (std::size_t i = 0; i < n; ++i)
         if (histogram[i] > 0.0f)
             for (std::size_t j = 0; j < n; ++j) rating[j] += histogram[i] * smooth_[i * n + j];
-    const float most = *std::max_element(rating.begin(), rating.end());
+    const float most = rating[first_largest(rating.data(), n)];
     if (most > 0.0f)
-        for (auto& one : rating) one /= most;
+        for (std::size_t j = 0; j < n; ++j) rating[j] /= most;
     std::array<vec3, 3> axes;
     for (auto& axis : axes) {
-        const auto best = static_cast<std::size_t>(std::max_element(rating.begin(), rating.end()) - rating.begin());
+        const std::size_t best = first_largest(rating.data(), n);
         axis = directions_[best];
         const float* lower = lower_.data() + best * n;
         for (std::size_t j = 0; j < n; ++j) rating[j] = (rating[j] + 1.0f) * lower[j];

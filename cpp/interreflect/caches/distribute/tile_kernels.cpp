@@ -119,6 +119,22 @@ void count_normals(const Coordinates& normal, const float* depth, std::size_t co
     });
 }
 
+std::size_t first_largest(const float* numbers, std::size_t count) {
+    const Floats d;
+    const auto next = [&](std::size_t begin) HWY_ATTR {
+        const auto there = hn::FirstN(d, std::min(hn::Lanes(d), count - begin));
+        return hn::IfThenElse(there, hn::LoadU(d, numbers + begin), hn::Set(d, -1.0f));
+    };
+    V most = hn::Set(d, -1.0f);
+    each_vector(count, [&](std::size_t begin) HWY_ATTR { most = hn::Max(most, next(begin)); });
+    most = hn::MaxOfLanes(d, most);
+    for (std::size_t begin = 0; begin < count; begin += hn::Lanes(d)) {
+        const auto largest = hn::Eq(next(begin), most);
+        if (!hn::AllFalse(d, largest)) return begin + hn::FindKnownFirstTrue(d, largest);
+    }
+    return 0;
+}
+
 void nearest_axes(const Coordinates& normal, std::size_t count, const std::array<vec3, 3>& axes, std::uint32_t* axis) {
     const Floats d;
     const Ints di;
@@ -208,6 +224,7 @@ namespace interreflect {
 HWY_EXPORT(copy_vectors);
 HWY_EXPORT(copy_numbers);
 HWY_EXPORT(count_normals);
+HWY_EXPORT(first_largest);
 HWY_EXPORT(nearest_axes);
 HWY_EXPORT(slice_depths);
 HWY_EXPORT(best_pixels);
@@ -221,6 +238,7 @@ void copy_numbers(std::span<const float> from, const Rows& rows, std::vector<flo
 void count_normals(const Coordinates& normal, const float* depth, std::size_t count, int bins, float* histogram) {
     HWY_DYNAMIC_DISPATCH(count_normals)(normal, depth, count, bins, histogram);
 }
+std::size_t first_largest(const float* numbers, std::size_t count) { return HWY_DYNAMIC_DISPATCH(first_largest)(numbers, count); }
 void nearest_axes(const Coordinates& normal, std::size_t count, const std::array<vec3, 3>& axes, std::uint32_t* axis) {
     HWY_DYNAMIC_DISPATCH(nearest_axes)(normal, count, axes, axis);
 }

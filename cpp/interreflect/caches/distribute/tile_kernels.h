@@ -31,6 +31,9 @@ void copy_numbers(std::span<const float> from, const Rows& rows, std::vector<flo
 /// Adds 1 to the octahedral map's bin of each of `count` normals whose depth is finite: bins * bins of them, row by row.
 void count_normals(const Coordinates& normal, const float* depth, std::size_t count, int bins, float* histogram);
 
+/// Where the first of the largest numbers is; `count` above 0, with room, none of them below 0.
+std::size_t first_largest(const float* numbers, std::size_t count);
+
 /// The signed axis, of three, to which each normal is nearest: 0 to 5.
 void nearest_axes(const Coordinates& normal, std::size_t count, const std::array<vec3, 3>& axes, std::uint32_t* axis);
 
