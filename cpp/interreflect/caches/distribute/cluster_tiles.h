@@ -1,7 +1,9 @@
 /// Clusters of all tiles: keys, groups, counts, and one cache each, as in clustered shading [Olsson et al. 2012], tile by tile.
 #pragma once
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <span>
 #include <vector>
 
@@ -82,6 +84,7 @@ int find_tile(const GBuffer& gbuffer, int target, const MakeKeys& make) {
 /// One cache for every cluster of a picture's tiles.
 template <class Keys>
 CachePlaces cluster_tiles(const GBuffer& gbuffer, int tile, const Keys& keys) {
+    constexpr std::size_t at_once = 8;
     CachePlaces places = tiles_of(gbuffer, tile);
     const std::size_t all = static_cast<std::size_t>(places.columns) * places.rows;
     places.cluster = Buffer<std::uint32_t>(gbuffer.pixels());
@@ -89,32 +92,37 @@ CachePlaces cluster_tiles(const GBuffer& gbuffer, int tile, const Keys& keys) {
     struct Chosen {
         std::uint32_t pixel, members;
     };
-    std::vector<std::vector<Chosen>> chosen(all);
-    parallel_pieces(all, [&](std::size_t i) {
+    std::vector<std::vector<Chosen>> chosen((all + at_once - 1) / at_once);
+    parallel_blocks(all, at_once, [&](std::size_t begin, std::size_t end) {
         thread_local TilePixels pixels;
         thread_local TileClusters clusters;
-        const Tile at = tile_at(places, i);
-        pixels.load(gbuffer, at), pixels.load_positions(gbuffer);
-        clusters.group(pixels, keys_of(pixels, keys));
-        clusters.choose_pixels(pixels);
-        for (const auto& cluster : clusters.clusters)
-            chosen[i].push_back({static_cast<std::uint32_t>(pixels.in_picture(cluster.pixel)), cluster.members});
-        const std::uint32_t* slot = clusters.slot.data();
-        for (int y = at.y0; y < at.y1; ++y)
-            for (int x = at.x0; x < at.x1; ++x) places.cluster[static_cast<std::size_t>(y) * places.width + x] = *slot++;
+        for (std::size_t i = begin; i < end; ++i) {
+            const Tile at = tile_at(places, i);
+            pixels.load(gbuffer, at), pixels.load_positions(gbuffer);
+            clusters.group(pixels, keys_of(pixels, keys));
+            clusters.choose_pixels(pixels);
+            for (const auto& cluster : clusters.clusters)
+                chosen[begin / at_once].push_back(
+                    {static_cast<std::uint32_t>(pixels.in_picture(cluster.pixel)), cluster.members});
+            places.first[i + 1] = static_cast<std::uint32_t>(clusters.clusters.size());
+            const std::uint32_t* slot = clusters.slot.data();
+            for (int y = at.y0; y < at.y1; ++y, slot += at.x1 - at.x0)
+                std::copy_n(slot, at.x1 - at.x0, places.cluster.data() + static_cast<std::size_t>(y) * places.width + at.x0);
+        }
     });
-    for (std::size_t i = 0; i < all; ++i) places.first[i + 1] = places.first[i] + static_cast<std::uint32_t>(chosen[i].size());
+    std::partial_sum(places.first.begin(), places.first.end(), places.first.begin());
     std::vector<std::uint32_t> pixels(places.first[all]), members(places.first[all]);
-    parallel_pieces(all, [&](std::size_t i) {
-        const std::uint32_t first = places.first[i];
-        for (std::size_t k = 0; k < chosen[i].size(); ++k)
-            pixels[first + k] = chosen[i][k].pixel, members[first + k] = chosen[i][k].members;
-        const Tile at = tile_at(places, i);
-        for (int y = at.y0; y < at.y1; ++y)
-            for (int x = at.x0; x < at.x1; ++x) {
-                auto& cluster = places.cluster[static_cast<std::size_t>(y) * places.width + x];
-                if (cluster != TileClusters::none) cluster += first;
+    parallel_blocks(all, at_once, [&](std::size_t begin, std::size_t end) {
+        std::size_t k = places.first[begin];
+        for (const Chosen& one : chosen[begin / at_once]) pixels[k] = one.pixel, members[k++] = one.members;
+        for (std::size_t i = begin; i < end; ++i) {
+            const Tile at = tile_at(places, i);
+            const std::uint32_t first = places.first[i];
+            for (int y = at.y0; y < at.y1; ++y) {
+                std::uint32_t* const row = places.cluster.data() + static_cast<std::size_t>(y) * places.width;
+                for (int x = at.x0; x < at.x1; ++x) row[x] += row[x] == TileClusters::none ? 0 : first;
             }
+        }
     });
     place_caches(gbuffer, pixels, members, places);
     places.counts.clusters = pixels.size();
