@@ -8,10 +8,9 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 import interreflect as ir
-from experiments.rehfeld.caches import SMALL, caching, cars, difference, indirect, own
-from experiments.shared.keep import NONE
-from experiments.shared.panels import as_light, panels
-from experiments.shared.scenes import phong_sponza
+from experiments.rehfeld.caches import caching, difference, indirect, own
+from experiments.rehfeld.sites import by_site, everywhere, tables
+from experiments.shared.panels import as_light, groups
 
 TILE = 20  # pixels: about 4,096 clusters of the cars
 WAYS = {"adapted axes": ir.Clustered(caches=0, tile=TILE), "fixed 3 x 3 cube faces": ir.CubeFaceClustered(caches=0, tile=TILE)}
@@ -19,31 +18,28 @@ WAYS = {"adapted axes": ir.Clustered(caches=0, tile=TILE), "fixed 3 x 3 cube fac
 
 def studies() -> Sequence[ir.Study]:
     """Of bent surfaces (the cars) and of flat ones (Sponza)."""
-    ways = [own(16), *(caching(distribute=way) for way in WAYS.values())]
-    flat = ir.Study(
-        name="Rehfeld: adapted axes, Sponza", scenes=[phong_sponza(50)], cameras=["nave"], methods=ways, size=SMALL, bounces=1,
-        reference=NONE, repeats=0,
-    )  # fmt: skip
-    return [cars("adapted axes", ways), flat]
+    return everywhere("adapted axes", [own(16), *(caching(distribute=way) for way in WAYS.values())])
 
 
 def table(*records: ir.Records) -> pd.DataFrame:
-    """A row per scene and way: clusters, and how far the indirect light is from a cache a pixel."""
-    rows = {}
-    for scene, one in zip(("cars", "Sponza"), records, strict=True):
-        exact = indirect(one, 0)
-        for i, name in enumerate(WAYS):
-            clusters = float(one[1 + i].row()["stage.distribute.clusters"])
-            rows[scene, name] = {"clusters": clusters, "difference": difference(indirect(one, 1 + i), exact)}
+    """A row per site and way: clusters, and how far the indirect light is from a cache a pixel."""
+    return tables(_table, records)
+
+
+def _table(records: ir.Records) -> pd.DataFrame:
+    exact, rows = indirect(records, 0), {}
+    for i, name in enumerate(WAYS):
+        clusters = float(records[1 + i].row()["stage.distribute.clusters"])
+        rows[name] = {"clusters": clusters, "difference": difference(indirect(records, 1 + i), exact)}
     return pd.DataFrame(rows).T
 
 
 def chart(*records: ir.Records) -> Figure:
-    found, shown = table(*records), []
-    for scene, one in zip(("cars", "Sponza"), records, strict=True):
-        exact = indirect(one, 0)
+    found, shown = table(*records), {}
+    for site, (one,) in by_site(records).items():
+        exact, shown[site] = indirect(one, 0), []
         for i, name in enumerate(WAYS):
-            row = found.loc[(scene, name)]
+            row = found.loc[(site, name)]
             title = f"{name}: {row['clusters']:,.0f} clusters, {row['difference']:.1%} off"
-            shown.append((title, as_light(indirect(one, 1 + i), exact)))
-    return panels(shown)
+            shown[site].append((title, as_light(indirect(one, 1 + i), exact)))
+    return groups(shown)

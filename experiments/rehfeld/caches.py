@@ -1,18 +1,14 @@
-"""Rehfeld's method, and the studies of its figures on the two cars."""
+"""Rehfeld's method as the paper sets it, and how far its light is from what it approximates."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 import interreflect as ir
-from experiments.shared.keep import NONE
-from experiments.shared.two_cars import EXPONENT, two_cars
 
-SMALL = (872, 572)  # half the paper's pictures along each side
 COUNTS = (1024, 2048, 4096, 8192)
 RESOLUTIONS = (8, 16, 32)
 
@@ -28,17 +24,6 @@ def caching(**changes: Any) -> ir.methods.ClusteredRadianceCaching:
 def own(resolution: int = 32) -> ir.methods.ClusteredRadianceCaching:
     """What sharing approximates: every pixel with a cache of its own, of the finest resolution that the paper tries."""
     return caching(interpolate=ir.Evaluated(), fill__resolution=resolution)
-
-
-def cars(
-    name: str, methods: Sequence[Any], exponent: float = EXPONENT, camera: str = "cars", size: tuple[int, int] = SMALL,
-    reference: ir.Reference = NONE, repeats: int = 0,
-) -> ir.Study:  # fmt: skip
-    """Pictures of the cars; not timed unless `repeats` says so."""
-    return ir.Study(
-        name=f"Rehfeld: {name}, exponent {exponent:g}", scenes=[two_cars(exponent)], cameras=[camera], methods=methods, size=size,
-        bounces=1, reference=reference, repeats=repeats, max_repeats=max(repeats, 1),
-    )  # fmt: skip
 
 
 def indirect(records: ir.Records, index: int) -> Image:

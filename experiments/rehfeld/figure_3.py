@@ -8,9 +8,10 @@ import numpy as np
 from matplotlib.figure import Figure
 
 import interreflect as ir
-from experiments.rehfeld.caches import cars
+from experiments.rehfeld.caches import difference
+from experiments.rehfeld.sites import by_site, everywhere
 from experiments.shared.cache_picture import CachePicture
-from experiments.shared.panels import as_light, panels
+from experiments.shared.panels import as_light, groups
 
 SIDE, ACROSS, DOWN = 64, 6, 3
 
@@ -20,12 +21,15 @@ def studies() -> Sequence[ir.Study]:
         {"show": "maps", "maps": ACROSS, "fill.resolution": SIDE, "distribute": ir.Clustered(caches=256)}
     )
     by_rays = by_cones.replace({"fill": ir.TracedFill(resolution=SIDE, samples=16)})
-    return [cars("maps of caches", [by_cones, by_rays], size=(SIDE * ACROSS, SIDE * DOWN))]
+    return everywhere("maps of caches", [by_cones, by_rays], size=(SIDE * ACROSS, SIDE * DOWN))
 
 
-def chart(records: ir.Records) -> Figure:
-    cones, rays = (np.asarray(records.images(record)[0]) for record in records)
-    return panels(
-        [("one cone a texel", as_light(cones, rays)), ("16 rays a texel, against the triangles", as_light(rays, rays))],
-        title="radiance caches of 64 x 64 texels: hemispheres about the surface's normal, of equal solid angles",
-    )
+def chart(*records: ir.Records) -> Figure:
+    shown = {}
+    for site, (one,) in by_site(records).items():
+        cones, rays = (np.asarray(one.images(record)[0]) for record in one)
+        shown[f"{site}: radiance caches of 64 x 64 texels, hemispheres about the surface's normal, of equal solid angles"] = [
+            (f"one cone a texel, {difference(cones, rays):.1%} off", as_light(cones, rays)),
+            ("16 rays a texel, against the triangles", as_light(rays, rays)),
+        ]
+    return groups(shown)

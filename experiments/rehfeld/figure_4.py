@@ -8,7 +8,8 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 import interreflect as ir
-from experiments.rehfeld.caches import caching, cars
+from experiments.rehfeld.caches import caching
+from experiments.rehfeld.sites import by_site, everywhere
 from experiments.shared.two_cars import SIZE
 from interreflect.charts.style import COLOURS, dress, new_figure
 
@@ -22,32 +23,38 @@ STAGES = {
     "evaluation": ["interpolate"],
     "direct light": ["shadow", "sky", "shade"],
 }
+READABLE = 0.02  # of a bar: what its number has room in
 
 
 def studies() -> Sequence[ir.Study]:
-    return [cars("times of the steps", [caching(shadow=ir.VoxelCones())], size=SIZE, repeats=5)]
+    return everywhere("times of the steps", [caching(shadow=ir.VoxelCones())], size=SIZE, repeats=5)
 
 
-def table(records: ir.Records) -> pd.DataFrame:
-    """Milliseconds: a row per step; columns `ours` and `paper`."""
+def table(*records: ir.Records) -> pd.DataFrame:
+    """Milliseconds: a row per step; a column per site, and `paper`."""
+    return pd.DataFrame({site: _steps(one) for site, (one,) in by_site(records).items()} | {"paper": PAPER})
+
+
+def _steps(records: ir.Records) -> dict[str, float]:
     row = records.table.iloc[0]
-    ours = {name: sum(float(row[f"stage.{stage}.milliseconds"]) for stage in stages) for name, stages in STAGES.items()}
-    return pd.DataFrame({"ours": ours, "paper": PAPER})
+    return {name: sum(float(row[f"stage.{stage}.milliseconds"]) for stage in stages) for name, stages in STAGES.items()}
 
 
-def chart(records: ir.Records) -> Figure:
-    times = table(records)
-    figure = new_figure((8.0, 2.4), dark=False)
+def chart(*records: ir.Records) -> Figure:
+    times = table(*records)
+    figure = new_figure((8.0, 3.0), dark=False)
     axes = figure.subplots()
     for place, column in enumerate(times):
         left = 0.0
         for colour, (step, value) in zip(COLOURS, times[column].items(), strict=False):
             share = value / times[column].sum()
             axes.barh(place, share, left=left, color=colour, label=step if place == 0 else None)
-            axes.text(left + share / 2, place, f"{value:.0f}", ha="center", va="center", fontsize=8, color="white")
+            if share > READABLE:
+                axes.text(left + share / 2, place, f"{value:.0f}", ha="center", va="center", fontsize=8, color="white")
             left += share
-    totals = times.sum()
-    axes.set_yticks([0, 1], [f"here, {totals['ours']:.0f} ms", f"paper (GTX 670), {totals['paper']:.0f} ms"])
+    names = {name: "paper (GTX 670)" if name == "paper" else name for name in times}
+    axes.set_yticks(range(len(names)), [f"{names[name]}, {total:.0f} ms" for name, total in times.sum().items()])
+    axes.invert_yaxis()
     axes.set(xlabel="share of the frame; numbers: milliseconds", xlim=(0, 1))
     dress(axes, dark=False)
     figure.legend(loc="outside lower center", ncols=6, fontsize=8, frameon=False)

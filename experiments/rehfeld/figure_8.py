@@ -9,8 +9,9 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 import interreflect as ir
-from experiments.rehfeld.caches import Image, caching, cars, difference, indirect, own
-from experiments.shared.panels import as_light, panels
+from experiments.rehfeld.caches import Image, caching, difference, indirect, own
+from experiments.rehfeld.sites import by_site, everywhere, tables
+from experiments.shared.panels import as_light, groups
 
 RADII = (1.0, 1.5, 2.0, 3.0, 4.0)
 
@@ -18,7 +19,7 @@ RADII = (1.0, 1.5, 2.0, 3.0, 4.0)
 def studies() -> Sequence[ir.Study]:
     # The radius in space grows with that on the screen, as it would end the weights otherwise.
     ways = [caching(interpolate__radius=radius, interpolate__world_radius=radius / 2) for radius in RADII]
-    return [cars("gathering radius, pictures", [own(16), *ways]), cars("gathering radius, times", ways, repeats=3)]
+    return [*everywhere("gathering radius, pictures", [own(16), *ways]), *everywhere("gathering radius, times", ways, repeats=3)]
 
 
 def detail(image: Image) -> float:
@@ -27,8 +28,12 @@ def detail(image: Image) -> float:
     return float((across + down) / image.mean())
 
 
-def table(pictures: ir.Records, times: ir.Records) -> pd.DataFrame:
-    """A row per radius: milliseconds of the evaluation, caches read a pixel, difference from a cache a pixel, and detail."""
+def table(*records: ir.Records) -> pd.DataFrame:
+    """A row per site and radius: milliseconds of the evaluation, caches read a pixel, difference from a cache a pixel, and detail."""
+    return tables(_table, records)
+
+
+def _table(pictures: ir.Records, times: ir.Records) -> pd.DataFrame:
     exact, rows = indirect(pictures, 0), {}
     for i, radius in enumerate(RADII):
         row = times[i].row()
@@ -42,11 +47,15 @@ def table(pictures: ir.Records, times: ir.Records) -> pd.DataFrame:
     return pd.DataFrame(rows).T
 
 
-def chart(pictures: ir.Records, times: ir.Records) -> Figure:
-    exact, found = indirect(pictures, 0), table(pictures, times)
-    shown = []
+def chart(*records: ir.Records) -> Figure:
+    found = table(*records)
+    return groups({site: _shown(its[0], found.loc[site]) for site, its in by_site(records).items()}, columns=3)
+
+
+def _shown(pictures: ir.Records, found: pd.DataFrame) -> list[tuple[str, Image]]:
+    exact, shown = indirect(pictures, 0), []
     for i, radius in enumerate(RADII):
         row = found.loc[radius]
         title = f"f = {radius:g}: {row['milliseconds']:.0f} ms, {row['read']:.0f} caches a pixel, {row['difference']:.1%} off"
         shown.append((title, as_light(indirect(pictures, 1 + i), exact)))
-    return panels([*shown, ("a cache at every pixel", as_light(exact, exact))], columns=3)
+    return [*shown, ("a cache at every pixel", as_light(exact, exact))]

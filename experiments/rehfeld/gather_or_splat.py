@@ -8,7 +8,8 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 import interreflect as ir
-from experiments.rehfeld.caches import caching, cars, difference, indirect, own
+from experiments.rehfeld.caches import caching, difference, indirect, own
+from experiments.rehfeld.sites import CARS, study
 from experiments.shared.panels import as_light, panels
 
 WAYS = {
@@ -20,7 +21,7 @@ WAYS = {
 
 def studies() -> Sequence[ir.Study]:
     ways = [caching(interpolate=way) for way in WAYS.values()]
-    return [cars("gather or splat, pictures", [own(16), *ways]), cars("gather or splat, times", ways, repeats=3)]
+    return [study(CARS, "gather or splat, pictures", [own(16), *ways]), study(CARS, "gather or splat, times", ways, repeats=3)]
 
 
 def table(pictures: ir.Records, times: ir.Records) -> pd.DataFrame:

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from scipy.ndimage import maximum_filter
 
 import interreflect as ir
-from experiments.rehfeld.caches import cars
+from experiments.rehfeld.sites import CARS, study
 from experiments.shared.cache_picture import CachePicture
 from experiments.shared.panels import as_light, panels
 
@@ -27,7 +27,7 @@ MISSED = 0.5  # of what is there
 def studies() -> Sequence[ir.Study]:
     maps = CachePicture.preset("Rehfeld 2014").replace({"show": "maps", "maps": ACROSS, "distribute": ir.Clustered(caches=1024)})
     ways = [maps.replace({"fill": fill}) for fill in FILLS.values()]
-    return [cars("one ray or one cone a texel", ways, size=(SIDE * ACROSS, SIDE * DOWN))]
+    return [study(CARS, "one ray or one cone a texel", ways, size=(SIDE * ACROSS, SIDE * DOWN))]
 
 
 def maps_of(records: ir.Records, index: int) -> np.ndarray:

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 import pandas as pd
-from matplotlib.figure import Figure
+from matplotlib.figure import Figure, FigureBase
 from numpy.typing import NDArray
 
 import interreflect as ir
@@ -33,19 +33,35 @@ def as_share(image: Image) -> Image:
 
 def panels(pictures: Sequence[tuple[str, Image]], columns: int = 2, width: float = 4.6, title: str = "") -> Figure:
     """Pictures of one size in rows of so many, each below its name."""
-    columns = min(columns, len(pictures))
-    rows = -(-len(pictures) // columns)
+    return groups({title: pictures}, columns, width)
+
+
+def groups(pictures: Mapping[str, Sequence[tuple[str, Image]]], columns: int = 2, width: float = 4.6) -> Figure:
+    """Groups of pictures, one below the other, each below its title; within one all are of one size, in rows of so many."""
+    columns = min(columns, max(map(len, pictures.values())))
+    heights = [_height(title, group, columns, width) for title, group in pictures.items()]
+    figure = new_figure((width * columns, sum(heights)), dark=False)
+    parts = figure.subfigures(len(heights), 1, squeeze=False, height_ratios=heights)[:, 0]
+    for part, (title, group) in zip(parts, pictures.items(), strict=True):
+        _fill(part, title, group, columns)
+    return figure
+
+
+def _height(title: str, pictures: Sequence[tuple[str, Image]], columns: int, width: float) -> float:
+    """Inches of a group: a line above each row for the names, one above all for the title."""
     height, across = pictures[0][1].shape[:2]
-    figure = new_figure((width * columns, rows * (width * height / across + 0.3) + (0.3 if title else 0)), dark=False)
-    axes = figure.subplots(rows, columns, squeeze=False).ravel()
+    return -(-len(pictures) // columns) * (width * height / across + 0.3) + (0.3 if title else 0)
+
+
+def _fill(part: FigureBase, title: str, pictures: Sequence[tuple[str, Image]], columns: int) -> None:
+    axes = part.subplots(-(-len(pictures) // columns), columns, squeeze=False).ravel()
     for ax in axes:
         ax.set_axis_off()
     for ax, (name, picture) in zip(axes, pictures, strict=False):
-        ax.imshow(picture, interpolation="nearest" if across < 200 else "antialiased")
+        ax.imshow(picture, interpolation="nearest" if picture.shape[1] < 200 else "antialiased")
         ax.set_title(name, fontsize=9)
     if title:
-        figure.suptitle(title, fontsize=10)
-    return figure
+        part.suptitle(title, fontsize=10)
 
 
 def picture(records: ir.Records, index: int = 0) -> Image:

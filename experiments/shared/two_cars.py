@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 from collections.abc import Iterator
 from functools import cache
 
@@ -12,14 +11,13 @@ from numpy.typing import NDArray
 import interreflect as ir
 from experiments.shared.placed import turned
 from experiments.shared.scenes import load
+from experiments.shared.suns import SUNS, sky
 
 SIZE = (1742, 1145)  # the paper's pictures
 DETAIL = 300_000  # triangles of the court: 1.85 M with two cars, the paper 1.9 M
 EXPONENT = 50.0
 LOBE = 0.2  # least specular reflectance, as a court and seats of diffuse materials have none
-SUNS = 10
 METRE = 4.9 / 10.0  # the car's file is 10.0 long, a BMW M6 4.9 m
-TILT = 60.0  # degrees
 PLACES = ((2.85, -1.3, 8.0), (2.45, 1.35, -10.0))  # x and z of a car's middle, m; degrees from facing +x
 CAMERAS = {
     "cars": ir.Camera(position=(7.9, 1.55, -0.7), target=(2.6, 0.35, 0.0), fov_x=70, size=SIZE),
@@ -34,26 +32,6 @@ def two_cars(exponent: float = EXPONENT, suns: int = SUNS) -> ir.Scene:
     one = ir.Scene(meshes=meshes, lights=sky(suns), cameras=CAMERAS, bodies={"car": _pose(*PLACES[0])})
     name = f"two cars, exponent {exponent:g}, {suns} suns"
     return one.instance("car", [_pose(*PLACES[1])]).replace(name=name)
-
-
-def sky(suns: int) -> tuple[ir.DirectionalLight, ...]:
-    """The courtyard's image as so many suns. Its light comes in low, between 5 and 40 degrees, and would end on the upper arches: the
-    image is tilted until it falls on floor and cars, three quarters and two fifths of which it then reaches."""
-    (courtyard,) = (light for light in load("bmw_m6/scene.toml").lights if isinstance(light, ir.EnvironmentLight))
-    image = _tilted(np.asarray(courtyard.image), TILT)
-    return ir.directional_lights(dataclasses.replace(courtyard, image=image), suns)
-
-
-def _tilted(image: NDArray[np.float32], degrees: float) -> NDArray[np.float32]:
-    """A latitude-longitude image whose centre, at -z, has gone up; nearest texels."""
-    height, width = image.shape[:2]
-    polar = ((np.arange(height) + 0.5) * np.pi / height)[:, None]
-    azimuth = (np.arange(width) + 0.5) * 2 * np.pi / width - np.pi
-    towards = np.stack(np.broadcast_arrays(np.sin(polar) * np.sin(azimuth), np.cos(polar), -np.sin(polar) * np.cos(azimuth)), 2)
-    x, y, z = np.moveaxis(towards @ turned(degrees, (1, 0, 0)), 2, 0)  # times the transpose: where it was
-    rows = np.minimum((np.arccos(np.clip(y, -1, 1)) / np.pi * height).astype(int), height - 1)
-    columns = ((np.arctan2(x, -z) / (2 * np.pi) + 0.5) * width).astype(int) % width
-    return np.ascontiguousarray(image[rows, columns])
 
 
 def _court(exponent: float) -> Iterator[ir.Mesh]:

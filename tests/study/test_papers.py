@@ -7,7 +7,7 @@ import matplotlib.figure
 import pytest
 from experiments.figures import LEDGER, PAPERS, draw, figures_of, main, make, names, questions
 from experiments.ledger.book import CLAIMS
-from experiments.rehfeld import caches
+from experiments.rehfeld import sites
 from experiments.shared import scenes
 from experiments.shared.keep import records_of
 
@@ -29,14 +29,15 @@ def stand_in(monkeypatch):
     scene = atrium.replace(lights=[*atrium.lights, sun], cameras={"nave": atrium.camera, "gallery": atrium.camera})
     scenes.load.cache_clear()
     monkeypatch.setattr(scenes, "load", lambda path: scene)
-    cars = scene.replace(cameras={"cars": atrium.camera, "grille": atrium.camera})
-    monkeypatch.setattr(caches, "two_cars", lambda exponent: cars)
+    cameras = {camera: atrium.camera for at in sites.SITES.values() for camera in (at.whole, at.bent)}
+    for site, at in sites.SITES.items():
+        monkeypatch.setitem(sites.SITES, site, dataclasses.replace(at, scene=lambda exponent: scene.replace(cameras=cameras)))
 
 
 def smaller(study):
     """The same question with few pixels and samples, and grids that take no time."""
     less = {"grid.resolution": lambda n: n // 4, "texels": lambda n: n // 16, "frames": lambda n: 2}
-    less |= {"distribute.caches": lambda n: n // 64, "fill.samples": lambda n: min(n, 4), "maps": lambda n: 1}
+    less |= {"distribute.caches": lambda n: n // 64, "fill.samples": lambda n: min(n, 4), "maps": lambda n: 1, "spp": lambda n: 4}
     less |= {"fill.resolution": lambda n: n // 4}
     less |= {"light_voxels.size": lambda n: max(n // 16, 4), "shadow.size": lambda n: n // 16}
     methods = []

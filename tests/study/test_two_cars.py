@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from experiments.shared import two_cars as scenes
+from experiments.shared.suns import sky
 
 import interreflect as ir
 
@@ -74,7 +75,7 @@ def test_ten_suns_reach_floor_and_cars(scene):
 
 def test_ten_suns_carry_most_of_what_four_hundred_do(scene):
     """A sun keeps what its region brings to a surface that faces it, which is less than the region's flux."""
-    fewer, more = (sum(np.array(light.irradiance) for light in scenes.sky(n)) for n in (10, 400))
+    fewer, more = (sum(np.array(light.irradiance) for light in sky(n)) for n in (10, 400))
     assert fewer == pytest.approx(more, rel=0.15) and (fewer < more).all()
 
 
