@@ -117,6 +117,22 @@ TEST(MipChain, HoldsTheCosineLobesIntegralInItsTable) {
         EXPECT_LT(table_error(7, radiance), 0.8f * table_error(5, radiance));
 }
 
+TEST(MipChain, WeightsEveryTexelOfAFineMapByItsCosineInTheLobeAboutTheCachesNormal) {
+    const auto horizon = [](const vec3& d) { return d.z < 0.06f ? 1.0f : 0.0f; };
+    for (const int n : {16, 32, 64}) {
+        const ConvolvedCaches caches = preconvolve(MipChain{7}, one_cache(n, horizon));
+        const LayerMaps maps(caches, caches.filled->texels, caches.light, 0);
+        float sum = 0, weight = 0;
+        for (int i = 0; i < 64 * n * n; ++i) {
+            const int x = i % (8 * n), y = i / (8 * n);
+            const float cosine = hemisphere_direction(map_texel_centre(x, y, 8 * n)).z;
+            sum += read_texel(maps.level(0) + 4 * (y / 8 * n + x / 8)).x * cosine, weight += cosine;
+        }
+        // Half floats, and mean cosines of 4 x 4 directions a texel.
+        EXPECT_NEAR(read_map(maps.table, 7, vec2(0.5f)).x, sum / weight, 0.01f * sum / weight) << n;
+    }
+}
+
 /// Root mean square error of Phong lobes read from the chain, over that of their mean.
 float lobe_error(const Radiance& radiance, float exponent, bool resultant, float bias) {
     const ConvolvedCaches caches = preconvolve(MipChain{}, one_cache(16, radiance));

@@ -52,8 +52,9 @@ struct CachePlaces {
 
 /// The radiance that arrives at caches, as hemisphere maps (math/hemisphere_map.h) about their normals, in Frame(normal).
 ///
-/// A texel is four half floats R G B A: mean radiance over its solid angle, divided by `scale`, and the share of it that meets
-/// nothing. Maps follow each other cache by cache, row by row.
+/// A texel is four half floats R G B A: mean radiance over it, divided by `scale`, and the share of it that meets nothing; where
+/// directions within it are told apart, they count by their cosine to the normal as all that a surface reflects does. Maps follow
+/// each other cache by cache, row by row.
 struct FilledCaches {
     std::shared_ptr<const CachePlaces> places;
     int resolution = 0;  // texels on a side

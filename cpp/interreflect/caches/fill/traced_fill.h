@@ -9,8 +9,9 @@
 
 namespace interreflect {
 
-/// Rays against the triangles, spread evenly over each texel's solid angle; what one hits has the radiance of the finest voxel
-/// there. With one sample a texel it shows what pre-filtered voxels spare: bright parts that no ray meets.
+/// Rays against the triangles, spread evenly over each texel's solid angle and weighted by their cosines to the cache's normal,
+/// so that its irradiance is right at any resolution; what one hits has the radiance of the finest voxel there. With one sample a
+/// texel it shows what pre-filtered voxels spare: bright parts that no ray meets.
 struct TracedFill {
     int resolution = 16;
     int samples = 16;

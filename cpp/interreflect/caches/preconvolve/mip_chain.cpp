@@ -1,6 +1,8 @@
 #include "caches/preconvolve/mip_chain.h"
 
 #include <algorithm>
+#include <numeric>
+#include <optional>
 #include <vector>
 
 #include "caches/preconvolve/convolve.h"
@@ -10,8 +12,9 @@
 namespace interreflect {
 namespace {
 
-/// Texels of an m x m map from those of an n x n one, by how much of each lies within: equal areas are equal solid angles.
-SparseMeans coarser(int n, int m) {
+/// Texels of an m x m map from those of an n x n one, by how much of each lies within, which is its solid angle, times `weights`
+/// of theirs.
+SparseMeans coarser(int n, int m, const std::vector<float>& weights) {
     const float step = static_cast<float>(n) / static_cast<float>(m);
     const auto overlap = [&](int texel, int fine) {
         const float begin = std::max(static_cast<float>(texel) * step, static_cast<float>(fine));
@@ -21,13 +24,22 @@ SparseMeans coarser(int n, int m) {
     SparseMeans means{{0}, {}};
     for (int y = 0; y < m; ++y)
         for (int x = 0; x < m; ++x) {
+            const std::size_t first = means.shares.size();
+            float sum = 0;
             for (int j = 0; j < n; ++j)
-                for (int i = 0; i < n; ++i)
-                    if (const float weight = overlap(x, i) * overlap(y, j); weight > 0.0f)
-                        means.shares.push_back({j * n + i, weight});
+                for (int i = 0; i < n; ++i) {
+                    const int texel = j * n + i;
+                    const float weight = overlap(x, i) * overlap(y, j) * weights[static_cast<std::size_t>(texel)];
+                    if (weight > 0.0f) means.shares.push_back({texel, weight}), sum += weight;
+                }
+            for (std::size_t k = first; k < means.shares.size(); ++k) means.shares[k].weight /= sum;
             means.first.push_back(static_cast<int>(means.shares.size()));
         }
     return means;
+}
+
+SparseMeans coarser(int n, int m) {
+    return coarser(n, m, std::vector<float>(static_cast<std::size_t>(n) * static_cast<std::size_t>(n), 1.0f));
 }
 
 /// Directions all over the texels of an n x n map, texel by texel.
@@ -44,23 +56,24 @@ std::vector<vec3> directions_in(int n) {
     return directions;
 }
 
-/// The cosine lobe about the directions of an m x m map, from the texels of an n x n one: each counts with the mean cosine over
-/// it, as the one at its centre is far off on the map's diagonals. What lies below the cache's horizon is not known; it counts as
-/// what is.
+/// The mean cosine to `normal` over each texel, as the one at its centre is far off on the map's diagonals.
+std::vector<float> mean_cosines(const std::vector<vec3>& directions, const vec3& normal) {
+    std::vector<float> cosines(directions.size() / directions_each, 0.0f);
+    for (std::size_t i = 0; i < directions.size(); ++i)
+        cosines[i / directions_each] += std::max(glm::dot(normal, directions[i]), 0.0f) / static_cast<float>(directions_each);
+    return cosines;
+}
+
+/// The cosine lobe about the directions of an m x m map, from the texels of an n x n one. What lies below the cache's horizon is
+/// not known; it counts as what is.
 DenseMeans cosine_lobes(int n, int m) {
     DenseMeans means(n * n, m * m);
     const std::vector<vec3> directions = directions_in(n);
-    std::vector<float> cosine(static_cast<std::size_t>(n) * static_cast<std::size_t>(n));
     for (int y = 0; y < m; ++y)
         for (int x = 0; x < m; ++x) {
-            const vec3 normal = hemisphere_direction(map_texel_centre(x, y, m));
-            float sum = 0;
-            std::fill(cosine.begin(), cosine.end(), 0.0f);
-            for (std::size_t i = 0; i < directions.size(); ++i) {
-                const float here = std::max(glm::dot(normal, directions[i]), 0.0f);
-                cosine[i / directions_each] += here, sum += here;
-            }
-            for (int i = 0; i < n * n; ++i) means.set(i, y * m + x, cosine[i] / sum);
+            const std::vector<float> cosines = mean_cosines(directions, hemisphere_direction(map_texel_centre(x, y, m)));
+            const float sum = std::accumulate(cosines.begin(), cosines.end(), 0.0f);
+            for (int i = 0; i < n * n; ++i) means.set(i, y * m + x, cosines[static_cast<std::size_t>(i)] / sum);
         }
     return means;
 }
@@ -76,12 +89,19 @@ int table_source(const std::vector<int>& sizes) {
 
 struct Convolution {
     std::vector<SparseMeans> levels;  // 1 and on, from the one before
-    int source;                       // level of the table
+    /// Of a map finer than the table reads: its texels by their cosines, so that the lobe about the cache's own normal is exact.
+    std::optional<SparseMeans> source;
+    int inputs;  // texels that the table reads
     DenseMeans table;
 
     Convolution(const std::vector<int>& sizes, int table_size)
-        : source(table_source(sizes)), table(cosine_lobes(sizes[source], table_size)) {
+        : Convolution(sizes, table_size, sizes[static_cast<std::size_t>(table_source(sizes))]) {}
+
+  private:
+    Convolution(const std::vector<int>& sizes, int table_size, int read)
+        : inputs(read * read), table(cosine_lobes(read, table_size)) {
         for (std::size_t i = 1; i < sizes.size(); ++i) levels.push_back(coarser(sizes[i - 1], sizes[i]));
+        if (read < sizes[0]) source = coarser(sizes[0], read, mean_cosines(directions_in(sizes[0]), vec3(0, 0, 1)));
     }
 };
 
@@ -95,7 +115,8 @@ void convolve_layer(const Convolution& by, const Buffer<std::uint16_t>& filled, 
     constexpr std::size_t together = 4;
     parallel_blocks(caches, 16 * together, [&](std::size_t begin, std::size_t end) {
         const auto wide = static_cast<std::size_t>(by.table.stride());
-        std::vector<float> levels(together * (base + chain)), cosine(together * wide);
+        const std::size_t read = by.source ? 4 * static_cast<std::size_t>(by.inputs) : 0;
+        std::vector<float> levels(together * (base + chain)), cosine(together * wide), sources(together * read);
         // Of one of the caches: level 0, and then the chain as it is stored.
         const auto level_at = [&](std::size_t one, std::size_t i) {
             return levels.data() + one * (base + chain) +
@@ -104,12 +125,13 @@ void convolve_layer(const Convolution& by, const Buffer<std::uint16_t>& filled, 
         const float* from[together];
         float* to[together];
         for (std::size_t one = 0; one < together; ++one)
-            from[one] = level_at(one, static_cast<std::size_t>(by.source)), to[one] = cosine.data() + one * wide;
+            from[one] = by.source ? sources.data() + one * read : level_at(one, 0), to[one] = cosine.data() + one * wide;
         for (std::size_t first = begin; first < end; first += together) {
             const std::size_t count = std::min(together, end - first);
             for (std::size_t one = 0; one < count; ++one) {
                 halves_to_floats(filled.data() + (first + one) * base, base, level_at(one, 0));
                 for (std::size_t i = 0; i < by.levels.size(); ++i) apply(by.levels[i], level_at(one, i), level_at(one, i + 1));
+                if (by.source) apply(*by.source, level_at(one, 0), sources.data() + one * read);
                 floats_to_halves(level_at(one, 0) + base, chain, layer.chain.data() + (first + one) * chain);
             }
             apply(by.table, from, to);
