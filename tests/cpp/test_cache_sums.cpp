@@ -10,6 +10,7 @@
 #include "caches/fill/texels.h"
 #include "caches/interpolate/cache_reader.h"
 #include "caches/interpolate/sum_caches.h"
+#include "caches/interpolate/view_lanes.h"
 #include "caches/preconvolve.h"
 #include "math/rng.h"
 

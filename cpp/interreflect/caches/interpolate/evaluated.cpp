@@ -9,7 +9,7 @@ namespace interreflect {
 CacheLight interpolate(const Evaluated&, const ConvolvedCaches*, const GBuffer& gbuffer, const Scene& scene,
                        const OwnCaches& own) {
     CacheLight light = empty_cache_light(gbuffer);
-    parallel_tiles(gbuffer.width, gbuffer.height, 64, [&](const Tile& tile) { clear_light(tile, light); });
+    parallel_tiles(gbuffer.width, gbuffer.height, 64, [&](const Tile& tile) { clear_unseen(tile, 0, light); });
     std::vector<std::uint32_t> pixels;
     for (std::size_t i = 0; i < gbuffer.pixels(); ++i)
         if (gbuffer.hit(i)) pixels.push_back(static_cast<std::uint32_t>(i));

@@ -13,7 +13,8 @@ CacheLight empty_cache_light(const GBuffer& gbuffer) {
     return light;
 }
 
-void clear_light(const Tile& tile, CacheLight& light) {
+void clear_unseen(const Tile& tile, int seeing, CacheLight& light) {
+    if (seeing == (tile.x1 - tile.x0) * (tile.y1 - tile.y0)) return;
     const auto row = static_cast<std::size_t>(tile.x1 - tile.x0);
     for (int y = tile.y0; y < tile.y1; ++y) {
         const std::size_t i = static_cast<std::size_t>(y) * light.gathered.width + tile.x0;
@@ -36,15 +37,6 @@ void finish_pixel(const ConvolvedCaches& caches, const PixelViews::View& view, c
     if (!view.glossy) return;
     light.glossy.radiance[i] = vec3(sum.glossy) * view.albedo * unit;
     light.glossy.sky[i] = view.albedo * (image ? sum.glossy_sky * sky_unit : filled.sky_radiance * (sum.glossy.w * mean));
-}
-
-void finish_pixels(const ConvolvedCaches& caches, const PixelViews& views, const CacheSums& sums, CacheLight& light,
-                   Served& served) {
-    for (int i = 0; i < views.count; ++i)
-        if (sums.weight[i] > 0.0f)
-            finish_pixel(caches, views.view(i), sums.at(i), light), ++served.covered;
-        else
-            served.uncovered.push_back(views.pixel[i]);
 }
 
 }  // namespace interreflect

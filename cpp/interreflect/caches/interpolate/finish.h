@@ -13,8 +13,8 @@ struct Served {
     std::vector<std::uint32_t> uncovered;  // pixels
 };
 
-/// Zero, as where nothing is seen.
-void clear_light(const Tile& tile, CacheLight& light);
+/// Zero, as where nothing is seen, unless all pixels of the tile see something and will be entered.
+void clear_unseen(const Tile& tile, int seeing, CacheLight& light);
 
 /// Enters the light of a pixel whose sum's weight is above 0.
 void finish_pixel(const ConvolvedCaches& caches, const PixelViews::View& view, const CacheSum& sum, CacheLight& light);

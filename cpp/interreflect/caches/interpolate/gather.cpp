@@ -67,8 +67,8 @@ CacheLight interpolate(const Gather& technique, const ConvolvedCaches* caches, c
         thread_local PixelViews views;
         thread_local CacheSums sums;
         thread_local std::vector<std::uint32_t> near;
-        clear_light(block, light);
         viewer.look(block, views);
+        clear_unseen(block, views.count, light);
         if (views.count == 0) return;
         if (hierarchy)
             caches_near(*hierarchy, views, near);

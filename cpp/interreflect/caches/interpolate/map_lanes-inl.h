@@ -54,7 +54,10 @@ struct Corners {
         const Vector px = place(at.x), py = place(at.y);
         const Vector x = hn::Min(hn::Floor(px), most), y = hn::Min(hn::Floor(py), most);
         const Vector fx = hn::Sub(px, x), fy = hn::Mul(hn::Sub(py, y), times);
-        first = hn::ConvertTo(di, hn::MulAdd(y, size, x));
+        // Whole numbers below 2^23 are the lower bits of their sums with it: conversions would look for ones beyond the integers.
+        constexpr float shift = 8388608.0f;
+        const Vector shifted = hn::MulAdd(y, size, hn::Add(x, hn::Set(d, shift)));
+        first = hn::And(hn::BitCast(di, shifted), hn::Set(di, (1 << 23) - 1));
         weight[3] = hn::Mul(fx, fy);
         weight[2] = hn::Sub(fy, weight[3]);
         weight[1] = hn::NegMulAdd(fx, fy, hn::Mul(fx, times));

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "caches/interpolate/view_lanes.h"
 #include "math/hemisphere_map.h"
 #include "shading/pixel_lobe.h"
 
@@ -40,26 +41,10 @@ PixelViewer::PixelViewer(const GBuffer& gbuffer, const Scene& scene, const Convo
     }
 }
 
-/// The lobe that was last looked at, and its level: neighbours tend to have the same.
-struct PixelViewer::Width {
-    Lobe lobe = Lobe::ggx;
-    float alpha = -1.0f, exponent = -1.0f, level = 0.0f;
-};
-
 float PixelViewer::level_of(float cosine) const {
     const float solid_angle = 2.0f * pi * std::max(1.0f - cosine, 1e-8f);
     const float level = 0.5f * std::log2(solid_angle / map_texel_solid_angle(caches_.filled->resolution)) + caches_.level_bias;
     return std::clamp(level, 0.0f, static_cast<float>(caches_.levels() - 1));
-}
-
-float PixelViewer::level_of(std::size_t pixel, float half_angle, Width& last) const {
-    if (only_level_) return *only_level_;
-    if (caches_.width == LobeWidth::resultant) return level_of(std::cos(half_angle));
-    const PixelLobe of = lobe_at(gbuffer_, scene_.materials[scene_.material_of(gbuffer_.triangle[pixel])], pixel);
-    const float alpha = gbuffer_.alpha[pixel];
-    if (of.lobe != last.lobe || alpha != last.alpha || of.exponent != last.exponent)
-        last = {of.lobe, alpha, of.exponent, level_of(one_percent_cosine(of.lobe, alpha, of.exponent))};
-    return last.level;
 }
 
 void PixelViewer::look(const Tile& block, PixelViews& views) const {
@@ -91,36 +76,45 @@ void PixelViewer::look(std::span<const std::uint32_t> pixels, PixelViews& views)
 
 void PixelViewer::look_up(PixelViews& views) const {
     thread_local Reflections lobes;
-    std::array<std::uint16_t, PixelViews::capacity> of;  // lobe -> view
-    lobes.count = 0;
-    for (int i = 0; i < views.count; ++i) {
-        const std::uint32_t pixel = views.pixel[i];
-        for (int k = 0; k < 3; ++k)
-            views.position[k][i] = gbuffer_.position[pixel][k], views.normal[k][i] = gbuffer_.normal[pixel][k];
-        views.level[i] = PixelViews::no_lobe;
-        if (!(max_component(gbuffer_.specular[pixel]) > 0.0f)) continue;
-        of[lobes.count] = static_cast<std::uint16_t>(i);
-        lobes.add(gbuffer_, tables_, pixel);
-    }
-    for (int i = views.count; i % PixelViews::most_lanes != 0; ++i) {
-        for (int k = 0; k < 3; ++k)
-            views.position[k][i] = std::numeric_limits<float>::infinity(), views.normal[k][i] = views.direction[k][i] = 0.0f;
-        views.screen[0][i] = views.screen[1][i] = 0.0f;
-        views.level[i] = PixelViews::no_lobe;
+    alignas(64) float specular[3][PixelViews::capacity];
+    const int whole = (views.count + PixelViews::most_lanes - 1) / PixelViews::most_lanes * PixelViews::most_lanes;
+    if (views.count > 0) std::fill(views.pixel + views.count, views.pixel + whole, views.pixel[views.count - 1]);
+    const bool glossy = load_pixels(gbuffer_, views, lobes, specular);
+    for (int k = 0; k < 3; ++k) {
+        std::fill(views.position[k] + views.count, views.position[k] + whole, std::numeric_limits<float>::infinity());
+        std::fill(specular[k] + views.count, specular[k] + whole, 0.0f);
     }
     bound_groups(views);
-    views.finest = caches_.levels(), views.coarsest = -1;
-    if (lobes.count == 0) return;
-    find_lobes(tables_, gbuffer_.camera.position, false, lobes);
-    Width last;
-    for (int k = 0; k < lobes.count; ++k) {
-        const int i = of[k];
-        for (int axis = 0; axis < 3; ++axis) views.direction[axis][i] = lobes.direction[axis][k];
-        views.albedo[i] = lobes.albedo(k, gbuffer_.specular[views.pixel[i]]);
-        const float level = level_of(views.pixel[i], lobes.half_angle[k], last);
+    lobes.count = views.count;
+    for (int i = 0; i < views.count; ++i) {
+        const bool lobe = std::max({specular[0][i], specular[1][i], specular[2][i]}) > 0.0f;
+        lobes.table[i] = lobe ? tables_.first(views.pixel[i]) : 0;
+    }
+    if (glossy) find_lobes(tables_, gbuffer_.camera.position, false, lobes);
+    enter_lobes(lobes, specular, only_level_.value_or(0.0f), views);
+    if (glossy && !only_level_) find_levels(lobes, views);
+    bound_levels(views);
+}
+
+void PixelViewer::find_levels(const Reflections& lobes, PixelViews& views) const {
+    if (caches_.width == LobeWidth::resultant) {
+        const LevelOfWidth width{map_texel_solid_angle(caches_.filled->resolution), caches_.level_bias,
+                                 static_cast<float>(caches_.levels() - 1)};
+        interreflect::find_levels(width, lobes.half_angle, views);
+        return;
+    }
+    // The lobe that was last looked at, and its level: neighbours tend to have the same.
+    PixelLobe last{Lobe::ggx, -1.0f};
+    float alpha = -1.0f, level = 0.0f;
+    for (int i = 0; i < views.count; ++i) {
+        if (views.level[i] < 0.0f) continue;
+        const std::uint32_t pixel = views.pixel[i];
+        const PixelLobe of = lobe_at(gbuffer_, scene_.materials[scene_.material_of(gbuffer_.triangle[pixel])], pixel);
+        if (of.lobe != last.lobe || lobes.alpha[i] != alpha || of.exponent != last.exponent) {
+            last = of, alpha = lobes.alpha[i];
+            level = level_of(one_percent_cosine(of.lobe, alpha, of.exponent));
+        }
         views.level[i] = level;
-        views.finest = std::min(views.finest, static_cast<int>(level));
-        views.coarsest = std::max(views.coarsest, static_cast<int>(std::ceil(level)));
     }
 }
 

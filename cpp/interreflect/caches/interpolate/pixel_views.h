@@ -18,6 +18,7 @@ struct PixelViews {
     static constexpr int capacity = Reflections::capacity, block_size = 16, most_lanes = 16;
     static constexpr int group = most_lanes, groups = capacity / group;
     static constexpr float no_lobe = -2.0f;  // further than a level below the first
+    static constexpr int most_levels = 32;
     static_assert(block_size * block_size <= capacity && capacity % most_lanes == 0);
 
     /// One of them.
@@ -36,16 +37,16 @@ struct PixelViews {
                 {screen[0][i], screen[1][i]},
                 level[i] >= 0.0f,
                 {direction[0][i], direction[1][i], direction[2][i]},
-                albedo[i],
+                {albedo[0][i], albedo[1][i], albedo[2][i]},
                 level[i]};
     }
 
     int count = 0;
-    std::uint32_t pixel[capacity];
+    alignas(64) std::uint32_t pixel[capacity];
     alignas(64) float position[3][capacity], normal[3][capacity], screen[2][capacity];
-    alignas(64) float direction[3][capacity];  // unit
+    alignas(64) float direction[3][capacity];  // unit; 0 without a lobe, as is the next
+    alignas(64) float albedo[3][capacity];     // directional albedo at this view
     alignas(64) float level[capacity];         // of the maps, between the first and the last; no_lobe
-    vec3 albedo[capacity];                     // directional albedo at this view
     int finest = 0, coarsest = -1;             // levels that lobes are read from
 
     /// Of one coordinate within each group of pixels; empty where there are none. What is not finite is left out.
@@ -59,9 +60,6 @@ struct PixelViews {
     Bounds position_bounds[3], normal_bounds[3], screen_bounds[2];
 };
 
-/// Finds the bounds of all groups.
-void bound_groups(PixelViews& views);
-
 /// The way from pixels to what they look up, in maps of one kind.
 class PixelViewer {
   public:
@@ -72,9 +70,8 @@ class PixelViewer {
     void look(const Tile& block, PixelViews& views) const;
 
   private:
-    struct Width;
     void look_up(PixelViews& views) const;
-    float level_of(std::size_t pixel, float half_angle, Width& last) const;
+    void find_levels(const Reflections& lobes, PixelViews& views) const;
     float level_of(float cosine) const;
 
     const GBuffer& gbuffer_;

@@ -53,8 +53,8 @@ std::size_t look(const PixelViewer& viewer, const Tile& bin, std::vector<Block>&
             if (count == blocks.size()) blocks.emplace_back();
             Block& block = blocks[count];
             block.tile = {x, y, std::min(x + block_size, bin.x1), std::min(y + block_size, bin.y1), 0};
-            clear_light(block.tile, light);
             viewer.look(block.tile, block.views);
+            clear_unseen(block.tile, block.views.count, light);
             block.splats.clear();
             if (block.views.count > 0) ++count;
         }
