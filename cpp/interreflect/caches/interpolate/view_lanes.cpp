@@ -25,7 +25,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 bool load_pixels(const GBuffer& gbuffer, PixelViews& views, Reflections& lobes, float (*specular)[PixelViews::capacity]) {
     const Tag d;
-    for (int i = 0; i < views.count; i += PixelRow::length) {
+    const int lanes = static_cast<int>(hn::Lanes(d)), whole = (views.count + lanes - 1) / lanes * lanes;
+    for (int i = 0; i < whole; i += PixelRow::length) {
         const PixelRow row(views.pixel + i);
         row.load(gbuffer.position.data(), lobes.position[0] + i, lobes.position[1] + i, lobes.position[2] + i);
         row.load(gbuffer.normal.data(), lobes.normal[0] + i, lobes.normal[1] + i, lobes.normal[2] + i);
@@ -33,7 +34,7 @@ bool load_pixels(const GBuffer& gbuffer, PixelViews& views, Reflections& lobes, 
         row.load(gbuffer.alpha.data(), lobes.alpha + i);
     }
     Vector most = hn::Zero(d);
-    for (int i = 0; i < views.count; i += static_cast<int>(hn::Lanes(d)))
+    for (int i = 0; i < whole; i += lanes)
         for (int k = 0; k < 3; ++k) {
             hn::Store(hn::Load(d, lobes.position[k] + i), d, views.position[k] + i);
             hn::Store(hn::Load(d, lobes.normal[k] + i), d, views.normal[k] + i);
