@@ -89,6 +89,33 @@ def test_gather_and_splat_of_equal_weights_give_the_same_picture(room, knobs):
     assert gathered.counts.asdict()["cache_evaluations"] == splatted.counts.asdict()["cache_evaluations"]
 
 
+def facing_wall():
+    """Parallel to the picture, so that a cache's reach is a circle in it, nearly as wide as a splat is drawn at most."""
+    corners = np.array([(-2, -2, 0), (2, -2, 0), (2, 2, 0), (-2, 2, 0)], np.float32)
+    wall = ir.Mesh(corners, np.array([[0, 1, 2], [0, 2, 3]], np.uint32))
+    view = ir.Camera(position=(0, 0, 4), target=(0, 0, 0), fov_x=20)
+    return ir.Scene(meshes=[wall], lights=[ir.EnvironmentLight(radiance=(1.0, 1.0, 1.0))], cameras={"view": view})
+
+
+# Tiles that blocks of pixels do not divide into: some pixels lie just within the screen's reach of a cache, or just within its
+# reach in space, where the screen's does not matter. Over twenty tiles, 5 % of the reach are a whole one.
+@pytest.mark.parametrize("knobs", [{"radius": 2.7, "world_radius": 8.0}, {"radius": 1.3, "world_radius": 8.0},
+                                   {"radius": 20.0, "world_radius": 60.0}, {"radius": 60.0, "world_radius": 6.2}], ids=str)  # fmt: skip
+@pytest.mark.parametrize("tile", [7, 23])
+def test_no_way_to_find_caches_misses_one_that_reaches_a_pixel(knobs, tile):
+    wall = Pipeline(facing_wall(), distribute=ir.Equidistant(caches=0, tile=tile), fill=ir.ConeFill(resolution=2), size=(192, 144))
+    at = (np.arange(192) + 0.5)[None, :, None], (np.arange(144) + 0.5)[:, None, None]
+    distance = np.hypot(at[0] - wall.places.screen[:, 0], at[1] - wall.places.screen[:, 1])
+    by_screen = np.maximum(1 - (distance / (knobs["radius"] * tile)) ** 2, 0).sum(2)
+    ways = (ir.Gather(**knobs), ir.Gather(search="hierarchy", **knobs), ir.Splat(weight="minimum", **knobs))
+    lights = [wall.light(way) for way in ways]
+    for way, light in zip(ways, lights, strict=True):
+        assert (light.weight == lights[0].weight).all(), way
+        assert light.counts.asdict()["cache_evaluations"] == lights[0].counts.asdict()["cache_evaluations"]
+    if knobs["radius"] < knobs["world_radius"]:
+        assert lights[0].weight == pytest.approx(by_screen, rel=1e-3, abs=1e-5)
+
+
 @pytest.mark.parametrize("technique", [ir.Gather(), ir.Splat(), ir.Evaluated(), ir.Gather(radius=0.0, uncovered="own")], ids=repr)
 def test_bits_do_not_depend_on_the_number_of_threads(room, technique):
     many = fields(room.light(technique))
