@@ -53,15 +53,17 @@ read = {
     "Splat, minimum": base.replace(interpolate=ir.Splat(weight="minimum")),
 }
 
+PAPERS = ir.MipChain(width="one_percent", level_bias=0.0)
 held = {
     name: base.replace({"interpolate": ir.Evaluated(), "fill.resolution": texels, "preconvolve": preconvolve})
     for name, texels, preconvolve in (
-        ("8, 1 %", 8, ir.MipChain()),
-        ("16, 1 %", 16, ir.MipChain()),
-        ("32, 1 %", 32, ir.MipChain()),
-        ("16, resultant", 16, ir.MipChain(width="resultant")),
-        ("32, resultant", 32, ir.MipChain(width="resultant")),
-        ("16, resultant, finer by 1", 16, ir.MipChain(width="resultant", level_bias=-1.0)),
+        ("8, 1 %", 8, PAPERS),
+        ("16, 1 %", 16, PAPERS),
+        ("32, 1 %", 32, PAPERS),
+        ("16, resultant", 16, ir.MipChain(level_bias=0.0)),
+        ("32, resultant", 32, ir.MipChain(level_bias=0.0)),
+        ("16, resultant, finer by 1", 16, ir.MipChain()),
+        ("32, resultant, finer by 1", 32, ir.MipChain()),
         ("8, integral", 8, ir.LobeIntegral()),
         ("16, integral", 16, ir.LobeIntegral()),
         ("32, integral", 32, ir.LobeIntegral()),
