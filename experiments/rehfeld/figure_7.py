@@ -81,5 +81,5 @@ def _shown(records: Sequence[ir.Records], found: pd.DataFrame) -> list[tuple[str
             (f"path-traced truth: its halves' FLIP {row['halves']:.3f}", truth),
         )
         for shown, (name, image) in zip(rows, named, strict=True):
-            shown.append((name, as_light(image, truth)))
+            shown.append((name, as_light(blocks(image), blocks(truth))))
     return [picture for row in rows for picture in row]
