@@ -182,15 +182,8 @@ void bind_counts(py::module_& m) {
             "asdict",
             [](const Counts& c) {
                 py::dict d;
-                const auto enter = [&](const char* name, std::uint64_t value) {
-                    if (value != 0) d[name] = value;
-                };
-                enter("rays", c.rays), enter("shadow_rays", c.shadow_rays), enter("paths", c.paths), enter("samples", c.samples),
-                    enter("voxels", c.voxels);
-                enter("cones", c.cones), enter("cone_steps", c.cone_steps), enter("voxel_fetches", c.voxel_fetches);
-                enter("clusters", c.clusters), enter("caches", c.caches), enter("reused_caches", c.reused_caches);
-                enter("cache_evaluations", c.cache_evaluations), enter("covered_pixels", c.covered_pixels);
-                enter("uncovered_pixels", c.uncovered_pixels);
+                for (const NamedCount& count : every_count)
+                    if (c.*count.member != 0) d[py::str(std::string(count.name))] = c.*count.member;
                 return d;
             },
             "The counts that are not zero.");

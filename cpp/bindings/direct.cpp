@@ -63,7 +63,7 @@ void bind_reflective_shadow_map(py::module_& m) {
             name,
             [member](const py::object& self) {
                 const auto& map = self.cast<const Map&>();
-                return image_view(map.*member, map.view.size, map.view.size, self);
+                return image_view(map.*member, map.size, map.size, self);
             },
             doc);
     };
@@ -73,10 +73,8 @@ void bind_reflective_shadow_map(py::module_& m) {
     image("flux", &Map::flux, "Flux that the diffuse lobe sends on: albedo times incident, W.");
     image("specular", &Map::specular, "Reflectance of the glossy lobe at normal incidence.");
     image("alpha", &Map::alpha, "GGX width of the glossy lobe.");
-    cls.def_readonly("counts", &Map::counts).def_property_readonly("bytes", [](const Map& map) {
-        return map.position.bytes() + map.normal.bytes() + map.incident.bytes() + map.flux.bytes() + map.specular.bytes() +
-               map.alpha.bytes();
-    });
+    image("area", &Map::area, "Of surface that the texel covers, scene units squared.");
+    cls.def_readonly("counts", &Map::counts).def_property_readonly("bytes", &Map::bytes);
     m.def(
         "reflective_shadow_map",
         [](const BoundScene& s, int light, int size) {
@@ -85,6 +83,25 @@ void bind_reflective_shadow_map(py::module_& m) {
         },
         py::arg("scene"), py::arg("light"), py::arg("size"),
         "What a spot or directional light sees; `light` counts point, then spot, then directional lights.");
+    py::class_<LightMaps, std::shared_ptr<LightMaps>>(m, "LightMaps", "What all lights of a scene see.")
+        .def_property_readonly(
+            "maps",
+            [](const std::shared_ptr<LightMaps>& self) {
+                py::list maps;
+                for (auto& map : self->maps) maps.append(std::shared_ptr<Map>(self, &map));
+                return py::tuple(maps);
+            },
+            "A ReflectiveShadowMap each.")
+        .def_readonly("counts", &LightMaps::counts)
+        .def_property_readonly("bytes", &LightMaps::bytes);
+    m.def(
+        "light_maps",
+        [](const BoundScene& s, int size, int emitter_views, const std::vector<DirectionalLight>& environment) {
+            const LightMapKnobs knobs{size, emitter_views, environment};
+            return run([&] { return std::make_shared<LightMaps>(light_maps(s.scene, *s.intersector, *s.lights, knobs)); });
+        },
+        py::arg("scene"), py::arg("size"), py::arg("emitter_views"), py::arg("environment"),
+        "What all lights of a scene see; `environment`: directional lights that stand for the environment.");
 }
 
 }  // namespace

@@ -18,8 +18,9 @@ template <class Light, class T>
 void image_property(py::class_<Light, std::shared_ptr<Light>>& cls, const char* name, Buffer<T> Light::*image, const char* doc) {
     cls.def_property_readonly(
         name,
-        [image](const py::object& self) {
+        [image](const py::object& self) -> py::object {
             const auto& light = self.cast<const Light&>();
+            if ((light.*image).empty()) return py::none();  // virtual lights bring no sky and no occlusion
             return image_view(light.*image, light.width, light.height, self);
         },
         doc);

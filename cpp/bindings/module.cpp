@@ -43,5 +43,6 @@ PYBIND11_MODULE(_core, m) {
     bind_direct(m);
     bind_march(m);
     bind_caches(m);
+    bind_virtual_lights(m);
     bind_calibration(m);
 }

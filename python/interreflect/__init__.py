@@ -23,6 +23,7 @@ _HOMES = {
     **dict.fromkeys(("Profile", "Stage"), "profile"),
     **dict.fromkeys(("trace_gbuffer", "voxelize", "light_voxels", "prefilter", "march", "glossy", "shadow", "sky", "shade"), "stages"),
     **dict.fromkeys(("distribute", "fill", "preconvolve", "interpolate"), "stages"),
+    **dict.fromkeys(("light_maps", "sample_lights", "cluster_lights", "shadow_lights", "shade_lights"), "stages"),
     **dict.fromkeys(("techniques", "exact"), "stages"),
     **dict.fromkeys(("VoxelCoverage", "voxel_coverage"), "coverage"),
     "voxel_view": "cubes",
@@ -99,17 +100,22 @@ if TYPE_CHECKING:
     from interreflect.scenes.values import Scene as Scene
     from interreflect.scenes.values import SpotLight as SpotLight
     from interreflect.scenes.values import Texture as Texture
+    from interreflect.stages import cluster_lights as cluster_lights
     from interreflect.stages import distribute as distribute
     from interreflect.stages import exact as exact
     from interreflect.stages import fill as fill
     from interreflect.stages import glossy as glossy
     from interreflect.stages import interpolate as interpolate
+    from interreflect.stages import light_maps as light_maps
     from interreflect.stages import light_voxels as light_voxels
     from interreflect.stages import march as march
     from interreflect.stages import preconvolve as preconvolve
     from interreflect.stages import prefilter as prefilter
+    from interreflect.stages import sample_lights as sample_lights
     from interreflect.stages import shade as shade
+    from interreflect.stages import shade_lights as shade_lights
     from interreflect.stages import shadow as shadow
+    from interreflect.stages import shadow_lights as shadow_lights
     from interreflect.stages import sky as sky
     from interreflect.stages import techniques as techniques
     from interreflect.stages import trace_gbuffer as trace_gbuffer

@@ -1598,6 +1598,12 @@ class ReflectiveShadowMap:
         """
 
     @property
+    def area(self) -> numpy.typing.NDArray[numpy.float32]:
+        """
+        Of surface that the texel covers, scene units squared.
+        """
+
+    @property
     def bytes(self) -> int:
         ...
 
@@ -1634,6 +1640,24 @@ class ReflectiveShadowMap:
         """
         Reflectance of the glossy lobe at normal incidence.
         """
+class LightMaps:
+    """
+    What all lights of a scene see.
+    """
+
+    @property
+    def bytes(self) -> int:
+        ...
+
+    @property
+    def counts(self) -> Counts:
+        ...
+
+    @property
+    def maps(self) -> tuple[typing.Any, ...]:
+        """
+        A ReflectiveShadowMap each.
+        """
 class GatheredLight:
     """
     What arrives at the pixels over the hemisphere about the shading normal; zero where nothing was hit.
@@ -1648,19 +1672,19 @@ class GatheredLight:
         ...
 
     @property
-    def irradiance(self) -> numpy.typing.NDArray[numpy.float32]:
+    def irradiance(self) -> typing.Any:
         """
         (height, width, 3): of light that surfaces reflect, W/m^2.
         """
 
     @property
-    def occlusion(self) -> numpy.typing.NDArray[numpy.float32]:
+    def occlusion(self) -> typing.Any:
         """
         (height, width): cosine-weighted share of the hemisphere that is closed.
         """
 
     @property
-    def sky(self) -> numpy.typing.NDArray[numpy.float32]:
+    def sky(self) -> typing.Any:
         """
         (height, width, 3): of the environment through the openings, W/m^2.
         """
@@ -1678,13 +1702,13 @@ class GlossyLight:
         ...
 
     @property
-    def radiance(self) -> numpy.typing.NDArray[numpy.float32]:
+    def radiance(self) -> typing.Any:
         """
         (height, width, 3): of light that surfaces reflected, W/(m^2 sr).
         """
 
     @property
-    def sky(self) -> numpy.typing.NDArray[numpy.float32]:
+    def sky(self) -> typing.Any:
         """
         (height, width, 3): of the environment, W/(m^2 sr).
         """
@@ -2484,9 +2508,520 @@ class Evaluated:
 
     def __eq__(self, other: object) -> bool:
         ...
+class VirtualLights:
+    """
+    Disks of lit surface that reflect diffusely; n lights in parallel arrays.
+    """
+
+    def __len__(self) -> int:
+        ...
+
+    @property
+    def area(self) -> numpy.typing.NDArray[numpy.float32]:
+        """
+        (n,): scene units squared.
+        """
+
+    @property
+    def bytes(self) -> int:
+        ...
+
+    @property
+    def cluster(self) -> tuple[typing.Any, ...]:
+        """
+        (size, size) of each map: every texel's light, 2^32 - 1 where it sends nothing on. Empty but for KMeans.
+        """
+
+    @property
+    def counts(self) -> Counts:
+        ...
+
+    @property
+    def flux(self) -> numpy.typing.NDArray[numpy.float32]:
+        """
+        (n, 3): sent on, W.
+        """
+
+    @property
+    def members(self) -> numpy.typing.NDArray[numpy.uint32]:
+        """
+        (n,): texels that each stands for.
+        """
+
+    @property
+    def normal(self) -> numpy.typing.NDArray[numpy.float32]:
+        """
+        (n, 3): unit.
+        """
+
+    @property
+    def position(self) -> numpy.typing.NDArray[numpy.float32]:
+        """
+        (n, 3): world space.
+        """
+
+    @property
+    def texel(self) -> numpy.typing.NDArray[numpy.uint32]:
+        """
+        (n,): where each stands, a number over the texels of all maps.
+        """
+class SurfacePoints:
+    """
+    Points that stand for a scene's surface in shadow maps.
+    """
+
+    def __len__(self) -> int:
+        ...
+
+    @property
+    def area(self) -> float:
+        """
+        Of the whole surface, scene units squared.
+        """
+
+    @property
+    def bytes(self) -> int:
+        ...
+
+    @property
+    def position(self) -> numpy.typing.NDArray[numpy.float32]:
+        """
+        (n, 3): in the space of the instance that each moves with.
+        """
+class LightShadows:
+    """
+    What virtual lights see of a scene.
+    """
+
+    @property
+    def bytes(self) -> int:
+        ...
+
+    @property
+    def counts(self) -> Counts:
+        ...
+
+    @property
+    def depth(self) -> numpy.typing.NDArray[numpy.float32]:
+        """
+        (n, size, size): radial distance in each light's paraboloid map, infinite where it is open; none without maps.
+        """
+class VirtualLight:
+    """
+    What pixels get from virtual lights.
+    """
+
+    @property
+    def bytes(self) -> int:
+        ...
+
+    @property
+    def counts(self) -> Counts:
+        ...
+
+    @property
+    def gathered(self) -> GatheredLight:
+        """
+        What arrives over the hemisphere: irradiance alone.
+        """
+
+    @property
+    def glossy(self) -> GlossyLight:
+        """
+        What the glossy lobe reflects: radiance alone.
+        """
+class HaltonLights:
+    """Points of Halton's sequence, warped by the texels' importance."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self, *, lights: int=..., importance: str=...) -> None:
+        ...
+
+    def replace(self, *, lights: int=..., importance: str=...) -> HaltonLights:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+
+    @property
+    def lights(self) -> int:
+        ...
+
+    @property
+    def importance(self) -> str:
+        ...
+class EveryRsmPixel:
+    """Every texel of the reflective shadow maps is a light, or so many chosen at random by their flux."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self, *, samples: int=...) -> None:
+        ...
+
+    def replace(self, *, samples: int=...) -> EveryRsmPixel:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+
+    @property
+    def samples(self) -> int:
+        ...
+class KMeans:
+    """Clusters of texels about centres that move to their texels' mean, from frame to frame."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self, *, splat_size: int=..., position_weight: float=..., normal_weight: float=..., flux_weight: float=..., iterations: int=..., flux: str=..., centre: str=..., area: str=...) -> None:
+        ...
+
+    def replace(self, *, splat_size: int=..., position_weight: float=..., normal_weight: float=..., flux_weight: float=..., iterations: int=..., flux: str=..., centre: str=..., area: str=...) -> KMeans:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+
+    @property
+    def splat_size(self) -> int:
+        ...
+
+    @property
+    def position_weight(self) -> float:
+        ...
+
+    @property
+    def normal_weight(self) -> float:
+        ...
+
+    @property
+    def flux_weight(self) -> float:
+        ...
+
+    @property
+    def iterations(self) -> int:
+        ...
+
+    @property
+    def flux(self) -> str:
+        ...
+
+    @property
+    def centre(self) -> str:
+        ...
+
+    @property
+    def area(self) -> str:
+        ...
+class Unshadowed:
+    """Virtual lights shine through everything."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self) -> None:
+        ...
+
+    def replace(self) -> Unshadowed:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+class ImperfectShadowMaps:
+    """Paraboloid shadow maps of points on the scene's surface, each map of a part of them, with holes filled."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self, *, size: int=..., points: int=..., iterations: int=..., point_size: float=..., splat: str=..., bias: float=...) -> None:
+        ...
+
+    def replace(self, *, size: int=..., points: int=..., iterations: int=..., point_size: float=..., splat: str=..., bias: float=...) -> ImperfectShadowMaps:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+
+    @property
+    def size(self) -> int:
+        ...
+
+    @property
+    def points(self) -> int:
+        ...
+
+    @property
+    def iterations(self) -> int:
+        ...
+
+    @property
+    def point_size(self) -> float:
+        ...
+
+    @property
+    def splat(self) -> str:
+        ...
+
+    @property
+    def bias(self) -> float:
+        ...
+class TracedVisibility:
+    """Every lookup of a light's shadow is a ray."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self) -> None:
+        ...
+
+    def replace(self) -> TracedVisibility:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+class Pcss:
+    """Percentage-closer soft shadows: lookups spread as wide as the penumbra of the light's disk."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self, *, blocker_samples: int=..., filter_samples: int=..., nearest_blocker: float=...) -> None:
+        ...
+
+    def replace(self, *, blocker_samples: int=..., filter_samples: int=..., nearest_blocker: float=...) -> Pcss:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+
+    @property
+    def blocker_samples(self) -> int:
+        ...
+
+    @property
+    def filter_samples(self) -> int:
+        ...
+
+    @property
+    def nearest_blocker(self) -> float:
+        ...
+class Pcf:
+    """The share of several lookups, a fixed disk of texels, that are lit."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self, *, samples: int=..., radius: float=...) -> None:
+        ...
+
+    def replace(self, *, samples: int=..., radius: float=...) -> Pcf:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+
+    @property
+    def samples(self) -> int:
+        ...
+
+    @property
+    def radius(self) -> float:
+        ...
+class SimpleLookup:
+    """One lookup of a light's shadow: lit or not."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self) -> None:
+        ...
+
+    def replace(self) -> SimpleLookup:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+class TracedDisk:
+    """The share of a light's disk that rays reach."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self, *, samples: int=...) -> None:
+        ...
+
+    def replace(self, *, samples: int=...) -> TracedDisk:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+
+    @property
+    def samples(self) -> int:
+        ...
+class Point:
+    """A light is a point."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self) -> None:
+        ...
+
+    def replace(self) -> Point:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+class ClampedPoint:
+    """A light is a point whose geometry term is bounded."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self, *, bound: float=...) -> None:
+        ...
+
+    def replace(self, *, bound: float=...) -> ClampedPoint:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+
+    @property
+    def bound(self) -> float:
+        ...
+class PointToDisk:
+    """A light is a disk, seen from its middle."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self) -> None:
+        ...
+
+    def replace(self) -> PointToDisk:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+class DiskVector:
+    """A light is a disk; exact while all of it is above the receiver's horizon."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self) -> None:
+        ...
+
+    def replace(self) -> DiskVector:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+class DiskIntegral:
+    """The exact form factor of a light's disk, cut at the horizon."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self) -> None:
+        ...
+
+    def replace(self) -> DiskIntegral:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
 def _rebuild(arg0: typing.Any, arg1: dict[str, typing.Any]) -> typing.Any:
     """
     Makes a technique again from its knobs (pickle).
+    """
+def bounce_maps(scene: Scene, lights: VirtualLights, size: typing.SupportsInt | typing.SupportsIndex) -> LightMaps:
+    """
+    What virtual lights see.
+    """
+def cluster_lights(technique: EveryRsmPixel | KMeans, seeds: VirtualLights, maps: LightMaps, last: VirtualLights | None=None, seed: typing.SupportsInt | typing.SupportsIndex=0) -> VirtualLights:
+    """
+    Virtual lights, each for several texels.
     """
 def cone_shadow(technique: VoxelCones, scene: Scene, gbuffer: GBuffer, pyramids: collections.abc.Sequence[Pyramid], seed: typing.SupportsInt | typing.SupportsIndex=0) -> DirectLight:
     """
@@ -2523,6 +3058,18 @@ def hemisphere_square(direction: typing.Annotated[collections.abc.Sequence[typin
 def interpolate(technique: Evaluated | Gather | Splat, caches: ConvolvedCaches | None, gbuffer: GBuffer, scene: Scene, fill: TracedFill | ConeFill, preconvolve: LobeIntegral | MipChain, pyramids: collections.abc.Sequence[Pyramid], seed: typing.SupportsInt | typing.SupportsIndex=0) -> CacheLight:
     """
     Light that pixels get from caches.
+    """
+def join_lights(lists: collections.abc.Sequence[VirtualLights]) -> VirtualLights:
+    """
+    Several lists of lights as one.
+    """
+def light_maps(scene: Scene, size: typing.SupportsInt | typing.SupportsIndex, emitter_views: typing.SupportsInt | typing.SupportsIndex, environment: collections.abc.Sequence[DirectionalLight]) -> LightMaps:
+    """
+    What all lights of a scene see; `environment`: directional lights that stand for the environment.
+    """
+def light_pixels(shade_lights: DiskIntegral | DiskVector | PointToDisk | ClampedPoint | Point, filter_shadows: TracedDisk | SimpleLookup | Pcf | Pcss, share: EveryPixel | Interleaved, lights: VirtualLights, shadows: LightShadows, gbuffer: GBuffer, scene: Scene, seed: typing.SupportsInt | typing.SupportsIndex=0) -> VirtualLight:
+    """
+    All virtual lights at all pixels.
     """
 def light_voxels(technique: TracedLighting | ShadowMapInjection | ConeLighting | Bounces | BlendHistory, scene: Scene, voxels: VoxelGrid, seed: typing.SupportsInt | typing.SupportsIndex=0, history: None | Pyramid | LitVoxels=None, others: collections.abc.Sequence[VoxelGrid]=[]) -> LitVoxels:
     """
@@ -2564,6 +3111,14 @@ def reflective_shadow_map(scene: Scene, light: typing.SupportsInt | typing.Suppo
     """
     What a spot or directional light sees; `light` counts point, then spot, then directional lights.
     """
+def sample_lights(technique: EveryRsmPixel | HaltonLights, maps: LightMaps, seed: typing.SupportsInt | typing.SupportsIndex=0) -> VirtualLights:
+    """
+    Texels that become virtual lights, or seeds of clusters.
+    """
+def scatter_points(technique: TracedVisibility | ImperfectShadowMaps | Unshadowed, scene: Scene) -> SurfacePoints:
+    """
+    Points of a scene's surface for its lights' maps; none where there are no maps.
+    """
 def shade(gbuffer: GBuffer, gathered: GatheredLight, glossy: GlossyLight | None=None) -> numpy.typing.NDArray[numpy.float32]:
     """
     (height, width, 3): indirect light that leaves the pixels' surfaces towards the camera.
@@ -2574,6 +3129,10 @@ def shadow(technique: TracedShadows, scene: Scene, gbuffer: GBuffer, seed: typin
 @typing.overload
 def shadow(technique: ShadowMap, scene: Scene, gbuffer: GBuffer, seed: typing.SupportsInt | typing.SupportsIndex=0) -> DirectLight:
     ...
+def shadow_lights(technique: TracedVisibility | ImperfectShadowMaps | Unshadowed, lights: VirtualLights, points: SurfacePoints, scene: Scene) -> LightShadows:
+    """
+    What virtual lights see.
+    """
 def sky(technique: TracedSky, scene: Scene, gbuffer: GBuffer, seed: typing.SupportsInt | typing.SupportsIndex=0) -> DirectLight:
     ...
 def thread_limit() -> int:

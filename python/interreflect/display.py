@@ -26,9 +26,7 @@ def technique(value: Any) -> str:
 
     told: Mapping[str, Any] = type(value).description
     source = ", ".join(text for text in (told["source"], told["place"]) if text)
-    knobs = [
-        (one["name"], getattr(value, one["name"]), one["default"], one["unit"], knob_range(one), one["doc"]) for one in told["params"]
-    ]
+    knobs = [(one["name"], getattr(value, one["name"]), one["default"], one["unit"], knob_range(one), one["doc"]) for one in told["params"]]
     table = rows(("knob", "value", "default", "unit", "range", "meaning"), knobs) if knobs else ""
     return f"<p><b>{escape(told['name'])}</b>: {escape(told['doc'])} [{escape(source)}]</p>{table}"
 

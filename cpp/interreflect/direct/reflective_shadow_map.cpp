@@ -3,56 +3,191 @@
 #include <stdexcept>
 #include <string>
 
+#include "math/radical_inverse.h"
+#include "math/sampling.h"
+#include "visibility/light_view.h"
 #include "visibility/surface.h"
 
 namespace interreflect {
 namespace {
 
-LightView single_view(const Scene& scene, int light, int size) {
+// What a texel covers of a surface that it sees at a grazing angle is bounded: the texel's own border is then cruder than that.
+constexpr float least_cosine = 0.05f;
+
+/// A spot in one picture, or a directional light.
+struct PictureView {
+    LightView view;
+    vec3 irradiance{0};  // of a directional light
+    const LightSampler* lights = nullptr;
+    int light = 0;
+    int size = view.size;
+
+    Ray ray(float x, float y) const { return view.ray(x, y); }
+    float solid_angle(float x, float y) const { return view.texel_measure(x, y); }
+    bool parallel() const { return !view.perspective; }
+    vec3 incident(float x, float y, const vec3& position) const {
+        if (parallel()) return irradiance * view.texel_measure(x, y);
+        // A spot's irradiance times the squared distance is its intensity; the texel spans a solid angle of it.
+        const LightSampler::Delta delta = lights->delta(light, position);
+        return delta.irradiance * (delta.distance * delta.distance * view.texel_measure(x, y));
+    }
+};
+
+/// All around a point or spot light: texels of equal solid angle.
+struct SphereView {
+    vec3 origin;
+    const LightSampler* lights;
+    int light;
+    int size;
+
+    Ray ray(float x, float y) const {
+        return {origin, 0.0f, uniform_sphere({x / static_cast<float>(size), y / static_cast<float>(size)})};
+    }
+    float solid_angle(float, float) const { return 4.0f * pi / (static_cast<float>(size) * static_cast<float>(size)); }
+    bool parallel() const { return false; }
+    vec3 incident(float x, float y, const vec3& position) const {
+        const LightSampler::Delta delta = lights->delta(light, position);
+        return delta.irradiance * (delta.distance * delta.distance * solid_angle(x, y));
+    }
+};
+
+/// The hemisphere above a surface: texels of equal solid angle times cosine [Nusselt's disk, Shirley and Chiu's map].
+struct HemisphereView {
+    const DiskView& disk;
+    int size;
+    Frame frame{disk.normal};
+
+    vec3 local(float x, float y) const { return cosine_hemisphere({x / static_cast<float>(size), y / static_cast<float>(size)}); }
+    float texels() const { return static_cast<float>(size) * static_cast<float>(size); }
+    Ray ray(float x, float y) const { return {disk.position + disk.normal * disk.offset, 0.0f, frame.to_world(local(x, y))}; }
+    float solid_angle(float x, float y) const { return pi / (texels() * std::fmax(local(x, y).z, least_cosine)); }
+    bool parallel() const { return false; }
+    vec3 incident(float, float, const vec3&) const { return disk.flux / texels(); }
+};
+
+void clear_texel(ReflectiveShadowMap& map, std::size_t texel) {
+    map.position[texel] = map.normal[texel] = map.incident[texel] = map.flux[texel] = map.specular[texel] = vec3(0);
+    map.alpha[texel] = 1.0f;
+    map.area[texel] = map.offset[texel] = 0.0f;
+}
+
+template <class View>
+ReflectiveShadowMap trace_map(const Scene& scene, const Intersector& intersector, const View& view) {
+    const int size = view.size;
+    const auto n = static_cast<std::size_t>(size) * size;
+    ReflectiveShadowMap map{size,
+                            Buffer<vec3>(n),
+                            Buffer<vec3>(n),
+                            Buffer<vec3>(n),
+                            Buffer<vec3>(n),
+                            Buffer<vec3>(n),
+                            Buffer<float>(n),
+                            Buffer<float>(n),
+                            Buffer<float>(n),
+                            {}};
+    map.counts.rays = n;
+    trace_view(view, intersector, [&](int x, int y, const Hit& hit) {
+        const std::size_t texel = static_cast<std::size_t>(y) * size + x;
+        if (!hit.valid()) return clear_texel(map, texel);
+        const float cx = static_cast<float>(x) + 0.5f, cy = static_cast<float>(y) + 0.5f;
+        const vec3 direction = view.ray(cx, cy).direction;
+        const SurfacePoint point = surface_at(scene, hit, direction);
+        map.position[texel] = point.position;
+        map.normal[texel] = point.normal;
+        map.incident[texel] = view.incident(cx, cy, point.position);
+        map.flux[texel] = map.incident[texel] * point.albedo;
+        map.specular[texel] = point.specular;
+        map.alpha[texel] = point.alpha;
+        const float cosine = std::fmax(std::fabs(glm::dot(direction, point.geometric_normal)), least_cosine);
+        const float reach = view.parallel() ? 1.0f : hit.distance * hit.distance;
+        map.area[texel] = view.solid_angle(cx, cy) * reach / cosine;
+        map.offset[texel] = point.offset;
+    });
+    return map;
+}
+
+void check_size(int size) {
+    constexpr int most = 1 << 14;
+    if (size < 1 || size > most)
+        throw std::invalid_argument("size must lie in [1, " + std::to_string(most) + "] texels, got " + std::to_string(size));
+}
+
+ReflectiveShadowMap map_of(const Scene& scene, const Intersector& intersector, const DirectionalLight& light, int size) {
+    return trace_map(scene, intersector, PictureView{view_of(light, scene.geometry->bounds(), size), light.irradiance});
+}
+
+/// Of so many texels on a side for all, how many each of some views has.
+int side_of_each(int size, int views) {
+    return std::max(1, static_cast<int>(std::lround(static_cast<double>(size) / std::sqrt(static_cast<double>(views)))));
+}
+
+ReflectiveShadowMap map_of_delta(const Scene& scene, const Intersector& intersector, const LightSampler& lights, int light,
+                                 int size) {
     const int points = static_cast<int>(scene.point_lights.size()), spots = static_cast<int>(scene.spot_lights.size());
-    const int directions = static_cast<int>(scene.directional_lights.size());
-    if (light < points || light >= points + spots + directions)
-        throw std::invalid_argument("light must name a spot or directional light, a number in [" + std::to_string(points) + ", " +
-                                    std::to_string(points + spots + directions) + "), got " + std::to_string(light));
-    if (light >= points + spots) return view_of(scene.directional_lights[light - points - spots], scene.geometry->bounds(), size);
-    const auto views = views_of(scene.spot_lights[light - points], size);
-    if (views.size() != 1)
-        throw std::invalid_argument("light: a spot with a reflective shadow map must be narrower than 75 degrees");
-    return views[0];
+    if (light < points)
+        return trace_map(scene, intersector, SphereView{scene.point_lights[light].position, &lights, light, size});
+    if (light < points + spots) {
+        const SpotLight& spot = scene.spot_lights[light - points];
+        const auto views = views_of(spot, size);
+        if (views.size() == 1) return trace_map(scene, intersector, PictureView{views[0], vec3(0), &lights, light});
+        return trace_map(scene, intersector, SphereView{spot.position, &lights, light, size});
+    }
+    return map_of(scene, intersector, scene.directional_lights[light - points - spots], size);
+}
+
+void append_emitters(const Scene& scene, const Intersector& intersector, const LightSampler& lights, const LightMapKnobs& knobs,
+                     std::vector<ReflectiveShadowMap>& maps) {
+    const int views = knobs.emitter_views, size = side_of_each(knobs.size, views);
+    for (int i = 0; i < views; ++i) {
+        const auto index = static_cast<std::uint32_t>(i);
+        const float choose = (static_cast<float>(i) + 0.5f) / static_cast<float>(views);
+        const auto point = lights.sample_emitter_point(choose, {radical_inverse(2, index + 1), radical_inverse(3, index + 1)});
+        const vec3 flux = point.radiance * (pi / (point.pdf * static_cast<float>(views)));
+        const float offset = self_hit_offset(*scene.geometry, point.instance, point.triangle);
+        maps.push_back(reflective_shadow_map(scene, intersector, DiskView{point.position, point.normal, flux, offset}, size));
+    }
 }
 
 }  // namespace
 
 ReflectiveShadowMap reflective_shadow_map(const Scene& scene, const Intersector& intersector, const LightSampler& lights,
                                           int light, int size) {
-    constexpr int most = 1 << 14;
-    if (size < 1 || size > most)
-        throw std::invalid_argument("size must lie in [1, " + std::to_string(most) + "] texels, got " + std::to_string(size));
-    const LightView view = single_view(scene, light, size);
-    const auto n = static_cast<std::size_t>(size) * size;
-    ReflectiveShadowMap map{
-        view, Buffer<vec3>(n), Buffer<vec3>(n), Buffer<vec3>(n), Buffer<vec3>(n), Buffer<vec3>(n), Buffer<float>(n), {}};
-    map.counts.rays = n;
-    trace_view(view, intersector, [&](int x, int y, const Hit& hit) {
-        const std::size_t texel = static_cast<std::size_t>(y) * size + x;
-        const float cx = static_cast<float>(x) + 0.5f, cy = static_cast<float>(y) + 0.5f;
-        if (!hit.valid()) {
-            map.position[texel] = map.normal[texel] = map.incident[texel] = map.flux[texel] = map.specular[texel] = vec3(0);
-            map.alpha[texel] = 1.0f;
-            return;
-        }
-        const SurfacePoint point = surface_at(scene, hit, view.ray(cx, cy).direction);
-        const LightSampler::Delta delta = lights.delta(light, point.position);
-        // A spot's irradiance times the squared distance is its intensity; the texel spans a solid angle of it.
-        const float reach = view.perspective ? delta.distance * delta.distance : 1.0f;
-        map.position[texel] = point.position;
-        map.normal[texel] = point.normal;
-        map.incident[texel] = delta.irradiance * (reach * view.texel_measure(cx, cy));
-        map.flux[texel] = map.incident[texel] * point.albedo;
-        map.specular[texel] = point.specular;
-        map.alpha[texel] = point.alpha;
-    });
-    return map;
+    check_size(size);
+    const int points = static_cast<int>(scene.point_lights.size()), count = lights.delta_count();
+    if (light < points || light >= count)
+        throw std::invalid_argument("light must name a spot or directional light, a number in [" + std::to_string(points) + ", " +
+                                    std::to_string(count) + "), got " + std::to_string(light));
+    if (views_of_light(scene, light, size).size() != 1)
+        throw std::invalid_argument("light: a spot with a reflective shadow map must be narrower than 75 degrees");
+    return map_of_delta(scene, intersector, lights, light, size);
+}
+
+ReflectiveShadowMap reflective_shadow_map(const Scene& scene, const Intersector& intersector, const DiskView& disk, int size) {
+    check_size(size);
+    return trace_map(scene, intersector, HemisphereView{disk, size});
+}
+
+std::size_t LightMaps::texels() const {
+    std::size_t sum = 0;
+    for (const auto& map : maps) sum += map.texels();
+    return sum;
+}
+std::size_t LightMaps::bytes() const {
+    std::size_t sum = 0;
+    for (const auto& map : maps) sum += map.bytes();
+    return sum;
+}
+
+LightMaps light_maps(const Scene& scene, const Intersector& intersector, const LightSampler& lights, const LightMapKnobs& knobs) {
+    check_size(knobs.size);
+    LightMaps result;
+    for (int light = 0; light < lights.delta_count(); ++light)
+        result.maps.push_back(map_of_delta(scene, intersector, lights, light, knobs.size));
+    if (lights.has_emitters()) append_emitters(scene, intersector, lights, knobs, result.maps);
+    const int size = side_of_each(knobs.size, static_cast<int>(knobs.environment.size()));
+    for (const DirectionalLight& light : knobs.environment) result.maps.push_back(map_of(scene, intersector, light, size));
+    for (const auto& map : result.maps) result.counts += map.counts;
+    return result;
 }
 
 }  // namespace interreflect

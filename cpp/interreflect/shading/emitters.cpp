@@ -177,19 +177,25 @@ LightDirection EmitterSampler::sample(const vec3& position, float choose, const 
     return few_ ? sample_shapes(shapes_, position, choose, u) : sample_many(position, choose, u);
 }
 
-LightDirection EmitterSampler::sample_many(const vec3& position, float choose, const vec2& u) const {
+EmitterSampler::Point EmitterSampler::sample_point(float choose, const vec2& u) const {
     const auto piece_index = static_cast<std::uint32_t>(choose_entry(cdf_, choose).index);
     const Triangle& t = triangles_[of_piece_[piece_index]];
     const vec2 b = point_in(piece_at(piece_index - t.first_piece, t.cuts), t.cuts, uniform_triangle(u));
-    const vec3 to = t.corner + t.edge1 * b.x + t.edge2 * b.y - position;
+    const float pieces = static_cast<float>(t.cuts) * static_cast<float>(t.cuts);
+    const float density = (cdf_[piece_index + 1] - cdf_[piece_index]) * pieces / t.area;
+    return {t.corner + t.edge1 * b.x + t.edge2 * b.y, t.normal, radiance(t, b), density, t.instance, t.triangle};
+}
+
+LightDirection EmitterSampler::sample_many(const vec3& position, float choose, const vec2& u) const {
+    const Point point = sample_point(choose, u);
+    const vec3 to = point.position - position;
     LightDirection light;
     light.distance = glm::length(to);
     light.direction = to / light.distance;
-    const float cosine = -glm::dot(light.direction, t.normal);
+    const float cosine = -glm::dot(light.direction, point.normal);
     if (!(cosine > 0.0f) || !(light.distance > 0.0f)) return {};
-    light.radiance = radiance(t, b);
-    const float pieces = static_cast<float>(t.cuts) * static_cast<float>(t.cuts);
-    light.pdf = (cdf_[piece_index + 1] - cdf_[piece_index]) * pieces * light.distance * light.distance / (t.area * cosine);
+    light.radiance = point.radiance;
+    light.pdf = point.pdf * light.distance * light.distance / cosine;
     return light;
 }
 

@@ -21,6 +21,13 @@ class EmitterSampler {
     bool many() const { return !triangles_.empty() && !few_; }
     LightDirection sample(const vec3& position, float choose, const vec2& u) const;
     float pdf(const Hit& hit, const vec3& position, const vec3& direction) const;
+    /// A point on an emitter, in proportion to luminance times area, whoever looks at it.
+    struct Point {
+        vec3 position, normal, radiance;  // unit normal of the side that emits
+        float pdf;                        // by area
+        std::uint32_t instance, triangle;
+    };
+    Point sample_point(float choose, const vec2& u) const;
     /// For those who sample from many points at once; empty where emitters are many.
     std::span<const EmitterShape> shapes() const { return shapes_; }
 

@@ -48,6 +48,9 @@ class LightSampler {
         return emitters_.pdf(hit, position, direction);
     }
 
+    /// A point on an emitter; there must be one.
+    EmitterSampler::Point sample_emitter_point(float choose, const vec2& u) const { return emitters_.sample_point(choose, u); }
+
     std::span<const EmitterShape> emitter_shapes() const { return emitters_.shapes(); }
 
     bool has_environment() const { return environment_.present(); }

@@ -11,6 +11,7 @@ _HOMES = {
     "ConstantAmbient": "constant_ambient",
     "PathTracing": "path_tracing",
     "PathTracingDenoised": "path_tracing_denoised",
+    "VirtualAreaLights": "virtual_area_lights",
     "VoxelConeTracing": "voxel_cone_tracing",
 }
 
@@ -31,4 +32,5 @@ if TYPE_CHECKING:
     from interreflect.methods.constant_ambient import ConstantAmbient as ConstantAmbient
     from interreflect.methods.path_tracing import PathTracing as PathTracing
     from interreflect.methods.path_tracing_denoised import PathTracingDenoised as PathTracingDenoised
+    from interreflect.methods.virtual_area_lights import VirtualAreaLights as VirtualAreaLights
     from interreflect.methods.voxel_cone_tracing import VoxelConeTracing as VoxelConeTracing

@@ -1,0 +1,32 @@
+/// All virtual lights at all pixels: shade_lights and filter_shadows together, shared between pixels.
+#pragma once
+#include "data/gathered_light.h"
+#include "data/gbuffer.h"
+#include "shading/share.h"
+#include "virtual_lights/filter.h"
+#include "virtual_lights/shade.h"
+
+namespace interreflect {
+
+/// What virtual lights bring to the pixels. `gathered` holds irradiance alone, no sky and no occlusion.
+struct VirtualLight {
+    GatheredLight gathered;
+    GlossyLight glossy;
+    Counts counts;
+
+    std::size_t bytes() const { return gathered.bytes() + glossy.bytes(); }
+};
+
+struct LightPixels {
+    const ShadeLights& shade;
+    const FilterShadows& filter;
+    const Share& share;
+    std::uint32_t seed = 0;
+};
+
+/// Light i is that of the pixels whose phase is i modulo the number of phases (share.h). A pixel's glossy lobe sees each light as
+/// a point in its middle.
+VirtualLight light_pixels(const LightPixels& how, const VirtualLights& lights, const LightShadows& shadows,
+                          const GBuffer& gbuffer, const Scene& scene, const Intersector& intersector);
+
+}  // namespace interreflect
