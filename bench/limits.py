@@ -109,3 +109,28 @@ def evaluate(c: Calibration, pixels: int, evaluations: float) -> float:
     """A cache's weight for a pixel (20 operations), two bilinear looks of its chain and one of its table (12 texels of four channels, a
     multiply-add each); of each pixel nine vectors and numbers are read and its light written."""
     return max(compute(c, (20 + 2 * 48) * evaluations), move(c, (36 + 56) * pixels))
+
+
+REFLECTIVE_BYTES = 5 * 12 + 3 * 4  # a texel: five vectors, three floats
+
+
+def reflective_map(c: Calibration, texels: int) -> float:
+    """One ray a texel, side by side, while the map streams out."""
+    return max(trace(c, "primary", texels), move(c, REFLECTIVE_BYTES * texels))
+
+
+def cluster(c: Calibration, texels: int, comparisons: float) -> float:
+    """A texel and a centre by place, normal and flux (22 operations, two of them roots); position, normal, flux and area of each texel
+    are read and its cluster written; where each cluster's texels lie is known only after all, so position and cluster are read again."""
+    return max(compute(c, 22 * comparisons), move(c, (3 * 12 + 4 + 4 + 12 + 4) * texels))
+
+
+def imperfect_maps(c: Calibration, points: int, maps_bytes: float) -> float:
+    """Each point is read and projected (40 operations); the maps are cleared, read to pull and written by pushing."""
+    return max(compute(c, 40 * points), move(c, (2 * 12 + 4) * points + 3 * maps_bytes))
+
+
+def virtual_lights(c: Calibration, pixels: int, evaluations: float, lookups: float) -> float:
+    """A light for a pixel (50 operations), a lookup of its map (20: the place on the disk, its texel, the comparison); of each pixel
+    eight vectors and numbers are read and its light written, which merging and filtering does twice more."""
+    return max(compute(c, 50 * evaluations + 20 * lookups), move(c, 3 * (36 + 24) * pixels))

@@ -10,7 +10,7 @@ import time
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-SUITES = ("core", "voxels", "caches")
+SUITES = ("core", "voxels", "caches", "virtual-lights")
 
 
 def main(suite: str) -> None:
@@ -20,7 +20,7 @@ def main(suite: str) -> None:
     from bench import rows
 
     start, load = time.perf_counter(), os.getloadavg()[0]
-    calibration, measured = importlib.import_module(f"bench.{suite}").run(importlib.import_module("_peers"))
+    calibration, measured = importlib.import_module(f"bench.{suite.replace('-', '_')}").run(importlib.import_module("_peers"))
     results = ROOT / "results" / "bench"
     rows.write(measured, results / f"{suite}.json")
     (results / f"{suite}_calibration.json").write_text(json.dumps(calibration.asdict(), indent=1) + "\n")

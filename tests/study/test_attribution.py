@@ -29,6 +29,7 @@ def tints(monkeypatch):
     for stage, entry in TINTS.items():
         monkeypatch.setitem(_core.stages, stage, entry)
 
+
 SIZE = (24, 16)
 GOOD = Reference(noise=1e-5, max_spp=4096)
 

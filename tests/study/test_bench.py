@@ -63,6 +63,10 @@ def test_every_limit_is_positive_and_grows_with_the_work():
         lambda n: limits.evaluate(c, n, n),
         lambda n: limits.trace_lights(c, n, n),
         lambda n: limits.prefilter(c, n, n),
+        lambda n: limits.reflective_map(c, n),
+        lambda n: limits.cluster(c, n, n),
+        lambda n: limits.imperfect_maps(c, n, n),
+        lambda n: limits.virtual_lights(c, n, n, n),
     ]
     for limit in made:
         assert 0 < limit(1000) < limit(2000)
