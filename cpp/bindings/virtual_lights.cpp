@@ -25,10 +25,43 @@ py::array_t<T> numbers(const Buffer<T>& data, const py::object& owner) {
     return view(data.data(), {static_cast<py::ssize_t>(data.size())}, owner);
 }
 
+/// Lights that a user placed.
+std::shared_ptr<VirtualLights> placed_lights(const py::object& position, const py::object& normal, const py::object& flux,
+                                             const py::object& area, const py::object& offset) {
+    const auto at = rows<vec3, float>(position, "position");
+    const auto facing = rows<vec3, float>(normal, "normal"), sent = rows<vec3, float>(flux, "flux");
+    const auto areas = exact_array<float>(area, "area"), offsets = exact_array<float>(offset, "offset");
+    const std::size_t n = at.size();
+    const auto as_many = [n](std::size_t count, const char* name) {
+        if (count != n) throw py::value_error(std::string(name) + " must have as many entries as position, " + std::to_string(n));
+    };
+    as_many(facing.size(), "normal"), as_many(sent.size(), "flux");
+    as_many(static_cast<std::size_t>(areas.size()), "area"), as_many(static_cast<std::size_t>(offsets.size()), "offset");
+    auto lights = std::make_shared<VirtualLights>(make_virtual_lights(n));
+    for (std::size_t i = 0; i < n; ++i) {
+        lights->position[i] = at[i], lights->normal[i] = facing[i], lights->flux[i] = sent[i];
+        lights->area[i] = areas.data()[i], lights->offset[i] = offsets.data()[i];
+        lights->texel[i] = no_virtual_light, lights->members[i] = 0;
+        const auto light = [i](const char* what) { return "light " + std::to_string(i) + ": " + what; };
+        if (!std::isfinite(glm::dot(at[i], vec3(1)))) throw py::value_error(light("position must be finite"));
+        if (!(std::fabs(glm::length(facing[i]) - 1.0f) < 1e-3f)) throw py::value_error(light("normal must have length 1"));
+        if (!(min_component(sent[i]) >= 0.0f) || !std::isfinite(max_component(sent[i])))
+            throw py::value_error(light("flux must be finite and not negative"));
+        if (!(lights->area[i] >= 0.0f) || !std::isfinite(lights->area[i]))
+            throw py::value_error(light("area must be finite and not negative"));
+        if (!(lights->offset[i] >= 0.0f) || !std::isfinite(lights->offset[i]))
+            throw py::value_error(light("offset must be finite and not negative"));
+    }
+    return lights;
+}
+
 void bind_lights(py::module_& m) {
     using Lights = VirtualLights;
     py::class_<Lights, std::shared_ptr<Lights>> cls(m, "VirtualLights",
                                                     "Disks of lit surface that reflect diffusely; n lights in parallel arrays.");
+    cls.def(py::init(&placed_lights), py::arg("position"), py::arg("normal"), py::arg("flux"), py::arg("area"), py::arg("offset"),
+            "Lights of one's own: float32 arrays (n, 3), (n, 3) unit, (n, 3) W, (n,) scene units squared, and how far off the "
+            "surface rays start, (n,) scene units. ValueError names the array or the light that is wrong.");
     const auto three = [&cls](const char* name, Buffer<vec3> Lights::*member, const char* doc) {
         cls.def_property_readonly(
             name, [member](const py::object& self) { return vectors(self.cast<const Lights&>().*member, self); }, doc);

@@ -2513,6 +2513,11 @@ class VirtualLights:
     Disks of lit surface that reflect diffusely; n lights in parallel arrays.
     """
 
+    def __init__(self, position: typing.Any, normal: typing.Any, flux: typing.Any, area: typing.Any, offset: typing.Any) -> None:
+        """
+        Lights of one's own: float32 arrays (n, 3), (n, 3) unit, (n, 3) W, (n,) scene units squared, and how far off the surface rays start, (n,) scene units. ValueError names the array or the light that is wrong.
+        """
+
     def __len__(self) -> int:
         ...
 
