@@ -13,7 +13,7 @@ from interreflect import stages
 
 LIGHTS = 64
 STAGES = ("reflective_shadow_maps", "sample_lights", "cluster_lights", "shadow_lights", "shade_lights")
-SPP = 64  # of the truth
+SPP = 256  # of the truth
 
 
 @dataclasses.dataclass(frozen=True)

@@ -29,7 +29,6 @@ def tints(monkeypatch):
     for stage, entry in TINTS.items():
         monkeypatch.setitem(_core.stages, stage, entry)
 
-
 SIZE = (24, 16)
 GOOD = Reference(noise=1e-5, max_spp=4096)
 

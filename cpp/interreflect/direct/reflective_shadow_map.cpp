@@ -7,6 +7,7 @@
 #include "math/sampling.h"
 #include "visibility/light_view.h"
 #include "visibility/surface.h"
+#include "visibility/surface_kernel.h"
 
 namespace interreflect {
 namespace {
@@ -25,11 +26,11 @@ struct PictureView {
     Ray ray(float x, float y) const { return view.ray(x, y); }
     float solid_angle(float x, float y) const { return view.texel_measure(x, y); }
     bool parallel() const { return !view.perspective; }
-    vec3 incident(float x, float y, const vec3& position) const {
-        if (parallel()) return irradiance * view.texel_measure(x, y);
+    vec3 incident(float measure, const vec3& position) const {
+        if (parallel()) return irradiance * measure;
         // A spot's irradiance times the squared distance is its intensity; the texel spans a solid angle of it.
         const LightSampler::Delta delta = lights->delta(light, position);
-        return delta.irradiance * (delta.distance * delta.distance * view.texel_measure(x, y));
+        return delta.irradiance * (delta.distance * delta.distance * measure);
     }
 };
 
@@ -45,9 +46,9 @@ struct SphereView {
     }
     float solid_angle(float, float) const { return 4.0f * pi / (static_cast<float>(size) * static_cast<float>(size)); }
     bool parallel() const { return false; }
-    vec3 incident(float x, float y, const vec3& position) const {
+    vec3 incident(float measure, const vec3& position) const {
         const LightSampler::Delta delta = lights->delta(light, position);
-        return delta.irradiance * (delta.distance * delta.distance * solid_angle(x, y));
+        return delta.irradiance * (delta.distance * delta.distance * measure);
     }
 };
 
@@ -62,7 +63,7 @@ struct HemisphereView {
     Ray ray(float x, float y) const { return {disk.position + disk.normal * disk.offset, 0.0f, frame.to_world(local(x, y))}; }
     float solid_angle(float x, float y) const { return pi / (texels() * std::fmax(local(x, y).z, least_cosine)); }
     bool parallel() const { return false; }
-    vec3 incident(float, float, const vec3&) const { return disk.flux / texels(); }
+    vec3 incident(float, const vec3&) const { return disk.flux / texels(); }
 };
 
 void clear_texel(ReflectiveShadowMap& map, std::size_t texel) {
@@ -70,6 +71,85 @@ void clear_texel(ReflectiveShadowMap& map, std::size_t texel) {
     map.alpha[texel] = 1.0f;
     map.area[texel] = map.offset[texel] = 0.0f;
 }
+
+vec3 lane_of(const SurfacePacket::Lanes* rows, int lane) { return {rows[0][lane], rows[1][lane], rows[2][lane]}; }
+
+// Roofline: a ray of the rate of neighbouring ones and 72 bytes a texel. What is done for each surface must hide behind that: it
+// is done by vectors, and for several packets in turn, so that triangles and texels are there when they are needed.
+template <class View>
+class MapTracer {
+  public:
+    MapTracer(const Scene& scene, const Intersector& intersector, const View& view, ReflectiveShadowMap& map)
+        : scene_(scene), intersector_(intersector), view_(view), map_(map), kernel_(scene) {}
+
+    void trace(const Tile& tile) const {
+        Packet packets[together];
+        int count = 0;
+        for (int y0 = tile.y0; y0 < tile.y1; y0 += side)
+            for (int x0 = tile.x0; x0 < tile.x1; x0 += side) {
+                start(packets[count], tile, x0, y0);
+                if (++count == together) finish({packets, std::size_t(std::exchange(count, 0))});
+            }
+        finish({packets, static_cast<std::size_t>(count)});
+    }
+
+  private:
+    static constexpr int side = 4, together = 8;
+    struct Packet {
+        RayPacket rays;
+        SurfacePacket surfaces;
+        int x0, y0;
+        std::uint32_t active, plain;
+    };
+
+    void start(Packet& packet, const Tile& tile, int x0, int y0) const {
+        packet.x0 = x0, packet.y0 = y0, packet.active = 0;
+        for (int lane = 0; lane < RayPacket::width; ++lane) {
+            const int x = x0 + lane % side, y = y0 + lane / side;
+            packet.rays.set(lane, view_.ray(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f));
+            packet.active |= static_cast<std::uint32_t>(x < tile.x1 && y < tile.y1) << lane;
+        }
+        intersector_.nearest(packet.rays, packet.active);
+        prefetch_hits(kernel_, packet.rays);
+    }
+    void finish(std::span<Packet> packets) const {
+        for (Packet& p : packets) p.plain = plain_surfaces(kernel_, p.rays, p.active);
+        for (Packet& p : packets)
+            if (p.plain != 0) place_surfaces(kernel_, p.rays, p.plain, p.surfaces);
+        for (Packet& p : packets) {
+            if (p.plain != 0) texture_surfaces(kernel_, p.plain, p.surfaces);
+            for (std::uint32_t left = p.active; left != 0; left &= left - 1) store(p, __builtin_ctz(left));
+        }
+    }
+    void store(Packet& packet, int lane) const {
+        const int x = packet.x0 + lane % side, y = packet.y0 + lane / side;
+        const std::size_t texel = static_cast<std::size_t>(y) * map_.size + x;
+        const RayPacket& rays = packet.rays;
+        SurfacePacket& surfaces = packet.surfaces;
+        if (!rays.met(lane)) return clear_texel(map_, texel);
+        const vec3 direction(rays.direction_x[lane], rays.direction_y[lane], rays.direction_z[lane]);
+        if (((packet.plain >> lane) & 1U) == 0) surfaces.set(lane, surface_at(scene_, rays.hit(lane), direction));
+        const float solid_angle = view_.solid_angle(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
+        const KernelMaterial& material = kernel_.materials[surfaces.material[lane]];
+        map_.position[texel] = lane_of(surfaces.position, lane);
+        map_.normal[texel] = lane_of(surfaces.normal, lane);
+        map_.incident[texel] = view_.incident(solid_angle, map_.position[texel]);
+        map_.flux[texel] = map_.incident[texel] * lane_of(surfaces.albedo, lane);
+        const bool glossy = surfaces.lobe[lane] != SurfacePacket::no_lobe;
+        map_.specular[texel] = glossy ? vec3(material.specular[0], material.specular[1], material.specular[2]) : vec3(0);
+        map_.alpha[texel] = material.alpha;
+        const float cosine = std::fmax(std::fabs(glm::dot(direction, lane_of(surfaces.geometric_normal, lane))), least_cosine);
+        const float reach = view_.parallel() ? 1.0f : rays.far[lane] * rays.far[lane];
+        map_.area[texel] = solid_angle * reach / cosine;
+        map_.offset[texel] = surfaces.offset[lane];
+    }
+
+    const Scene& scene_;
+    const Intersector& intersector_;
+    const View& view_;
+    ReflectiveShadowMap& map_;
+    SurfaceKernel kernel_;
+};
 
 template <class View>
 ReflectiveShadowMap trace_map(const Scene& scene, const Intersector& intersector, const View& view) {
@@ -86,23 +166,8 @@ ReflectiveShadowMap trace_map(const Scene& scene, const Intersector& intersector
                             Buffer<float>(n),
                             {}};
     map.counts.rays = n;
-    trace_view(view, intersector, [&](int x, int y, const Hit& hit) {
-        const std::size_t texel = static_cast<std::size_t>(y) * size + x;
-        if (!hit.valid()) return clear_texel(map, texel);
-        const float cx = static_cast<float>(x) + 0.5f, cy = static_cast<float>(y) + 0.5f;
-        const vec3 direction = view.ray(cx, cy).direction;
-        const SurfacePoint point = surface_at(scene, hit, direction);
-        map.position[texel] = point.position;
-        map.normal[texel] = point.normal;
-        map.incident[texel] = view.incident(cx, cy, point.position);
-        map.flux[texel] = map.incident[texel] * point.albedo;
-        map.specular[texel] = point.specular;
-        map.alpha[texel] = point.alpha;
-        const float cosine = std::fmax(std::fabs(glm::dot(direction, point.geometric_normal)), least_cosine);
-        const float reach = view.parallel() ? 1.0f : hit.distance * hit.distance;
-        map.area[texel] = view.solid_angle(cx, cy) * reach / cosine;
-        map.offset[texel] = point.offset;
-    });
+    const MapTracer<View> tracer(scene, intersector, view, map);
+    parallel_tiles(size, size, view_tile_side, [&](const Tile& tile) { tracer.trace(tile); });
     return map;
 }
 
