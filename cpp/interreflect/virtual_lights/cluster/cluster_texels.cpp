@@ -46,12 +46,16 @@ void for_pieces(const LightMaps& maps, const Body& body) {
 TexelMetric::TexelMetric(const KMeans& technique, const LightMaps& maps) {
     const double sum = technique.position_weight + technique.normal_weight + technique.flux_weight;
     if (!(sum > 0)) throw std::invalid_argument("KMeans: at least one of its weights must be above 0");
+    std::vector<std::vector<LitExtent>> parts(sum_pieces, std::vector<LitExtent>(maps.maps.size()));
+    for_pieces(maps, [&](std::size_t piece, std::size_t m, std::size_t begin, std::size_t end, std::size_t) {
+        parts[piece][m] = lit_extent(maps.maps[m], begin, end);
+    });
     Bounds bounds;
-    for (const auto& map : maps.maps) {
+    scale_.assign(maps.maps.size(), 0.0f);
+    for (std::size_t m = 0; m < maps.maps.size(); ++m) {
         float largest = 0;
-        for (std::size_t i = 0; i < map.texels(); ++i)
-            if (sends(map, i)) bounds.add(map.position[i]), largest = std::max(largest, max_component(map.flux[i]));
-        scale_.push_back(largest > 0 ? 1.0f / largest : 0.0f);
+        for (const auto& part : parts) bounds.add(part[m].bounds), largest = std::max(largest, part[m].largest);
+        if (largest > 0) scale_[m] = 1.0f / largest;
     }
     const float extent = glm::length(bounds.upper - bounds.lower);
     const bool extended = extent > 0 && std::isfinite(extent);
@@ -73,41 +77,69 @@ ClusterCentre centre_at(const LightMaps& maps, const TexelMetric& metric, std::s
 
 namespace {
 
-/// The centres that may win texels of rows, and those that may win any.
+/// Texels of several rows that are compared together.
+constexpr int block_columns = 64;
+struct Block {
+    int x0, x1, y0, y1;
+};
+
+/// The centres that may win texels of a block, of its rows, and of anywhere; always in their own order.
 class Candidates {
   public:
     Candidates(const KMeans& technique, bool splats, std::span<const ClusterCentre> centres)
         : before_(technique.splat_size / 2), after_((technique.splat_size - 1) / 2), splats_(splats), centres_(centres) {
         for (std::uint32_t c = 0; c < centres.size(); ++c)
-            if (centres[c].valid) all_.push_back(made(c, everywhere));
+            if (centres[c].valid) all_.push_back(made(c, -everywhere, everywhere));
     }
+    bool splats() const { return splats_; }
     const std::vector<MetricCentre>& all() const { return all_; }
-    const std::vector<MetricCentre>& of_row(int y, std::vector<MetricCentre>& memory) const {
+    void of_block(const Block& block, std::vector<std::uint32_t>& found) const {
+        found.clear();
+        for (const MetricCentre& one : all_) {
+            const ClusterCentre& at = centres_[one.cluster];
+            if (at.y - before_ < block.y1 && at.y + after_ >= block.y0 && at.x - before_ < block.x1 && at.x + after_ >= block.x0)
+                found.push_back(one.cluster);
+        }
+    }
+    /// Of a row of a block that has `of` for candidates; columns count from x0 on.
+    const std::vector<MetricCentre>& of_row(std::span<const std::uint32_t> of, int x0, int y,
+                                            std::vector<MetricCentre>& memory) const {
         if (!splats_) return all_;
         memory.clear();
-        for (const MetricCentre& one : all_)
-            if (const int at = centres_[one.cluster].y; at - before_ <= y && y <= at + after_)
-                memory.push_back(made(one.cluster, after_));
+        for (const std::uint32_t c : of)
+            if (const ClusterCentre& at = centres_[c]; at.y - before_ <= y && y <= at.y + after_)
+                memory.push_back(made(c, at.x - before_ - x0, at.x + after_ - x0));
         return memory;
     }
 
   private:
     static constexpr int everywhere = 1 << 24;
 
-    MetricCentre made(std::uint32_t c, int reach) const {
+    MetricCentre made(std::uint32_t c, int first, int last) const {
         const ClusterCentre& centre = centres_[c];
-        const int back = reach == everywhere ? everywhere : before_;
-        return {centre.position,
-                centre.normal,
-                centre.flux,
-                static_cast<float>(centre.x - back),
-                static_cast<float>(centre.x + reach),
-                c};
+        return {centre.position, centre.normal, centre.flux, static_cast<float>(first), static_cast<float>(last), c};
     }
     int before_, after_;
     bool splats_;
     std::span<const ClusterCentre> centres_;
     std::vector<MetricCentre> all_;
+};
+
+/// Texels that no splat covers, side by side.
+struct Strays {
+    std::vector<vec3> position, normal, flux;
+    std::vector<std::uint32_t*> cluster;
+
+    void add(const ReflectiveShadowMap& map, std::size_t texel, std::uint32_t* to) {
+        position.push_back(map.position[texel]), normal.push_back(map.normal[texel]), flux.push_back(map.flux[texel]);
+        cluster.push_back(to);
+    }
+    void assign(float flux_scale, const MetricWeights& weights, std::span<const MetricCentre> centres) const {
+        std::vector<std::uint32_t> nearest(cluster.size());
+        const TexelRow row{position.data(), normal.data(), flux.data(), static_cast<int>(cluster.size()), flux_scale};
+        nearest_centres(row, weights, centres, nearest.data());
+        for (std::size_t i = 0; i < cluster.size(); ++i) *cluster[i] = nearest[i];
+    }
 };
 
 }  // namespace
@@ -121,77 +153,52 @@ std::uint64_t assign_texels(const KMeans& technique, const LightMaps& maps, cons
     parallel_pieces(bands.size(), [&](std::size_t piece) {
         const Band& band = bands[piece];
         const ReflectiveShadowMap& map = maps.maps[band.map];
+        const float flux_scale = metric.flux_scale(band.map);
+        std::uint32_t* const nearest = cluster.data() + first[band.map];
+        const int columns = candidates.splats() ? block_columns : map.size;
+        std::vector<std::uint32_t> of_block;
         std::vector<MetricCentre> memory;
-        std::uint64_t lost = 0;
-        for (int y = band.y0; y < band.y1; ++y) {
-            const std::size_t row = static_cast<std::size_t>(y) * map.size;
-            std::uint32_t* nearest = cluster.data() + first[band.map] + row;
-            const auto texels = [&](int x, int count) {
-                return TexelRow{map.position.data() + row + x, map.normal.data() + row + x, map.flux.data() + row + x, count,
-                                metric.flux_scale(band.map)};
-            };
-            nearest_centres(texels(0, map.size), metric.weights(), candidates.of_row(y, memory), nearest);
-            for (int x = 0; x < map.size; ++x) {
-                if (!sends(map, row + x)) {
-                    nearest[x] = no_virtual_light;
-                } else if (nearest[x] == no_virtual_light) {
-                    nearest_centres(texels(x, 1), metric.weights(), candidates.all(), nearest + x);
-                    ++lost;
-                }
+        for (int x0 = 0; x0 < map.size; x0 += columns) {
+            const Block block{x0, std::min(x0 + columns, map.size), band.y0, band.y1};
+            if (candidates.splats()) candidates.of_block(block, of_block);
+            for (int y = band.y0; y < band.y1; ++y) {
+                const std::size_t at = static_cast<std::size_t>(y) * map.size + x0;
+                const TexelRow row{map.position.data() + at, map.normal.data() + at, map.flux.data() + at, block.x1 - x0,
+                                   flux_scale};
+                nearest_centres(row, metric.weights(), candidates.of_row(of_block, x0, y, memory), nearest + at);
             }
         }
-        strays += lost;
+        Strays lost;
+        const auto begin = static_cast<std::size_t>(band.y0) * map.size, end = static_cast<std::size_t>(band.y1) * map.size;
+        for (std::size_t i = begin; i < end; ++i) {
+            if (!sends(map, i))
+                nearest[i] = no_virtual_light;
+            else if (nearest[i] == no_virtual_light)
+                lost.add(map, i, nearest + i);
+        }
+        lost.assign(flux_scale, metric.weights(), candidates.all());
+        strays += lost.cluster.size();
     });
     return strays;
 }
 
-ClusterSums sum_texels(const LightMaps& maps, const Buffer<std::uint32_t>& cluster, std::size_t clusters) {
-    std::vector<ClusterSums> parts(sum_pieces, ClusterSums(clusters));
+ClusterSums sum_texels(const LightMaps& maps, const Buffer<std::uint32_t>& cluster, std::vector<vec3> origins) {
+    const std::size_t clusters = origins.size();
+    std::vector<std::vector<ClusterSum>> parts(sum_pieces, std::vector<ClusterSum>(clusters));
     for_pieces(maps, [&](std::size_t piece, std::size_t m, std::size_t begin, std::size_t end, std::size_t first) {
-        const ReflectiveShadowMap& map = maps.maps[m];
-        ClusterSums& sums = parts[piece];
-        for (std::size_t i = begin; i < end; ++i) {
-            const std::uint32_t c = cluster[first + i];
-            if (c == no_virtual_light) continue;
-            const glm::dvec3 position(map.position[i]);
-            const double weight = luminance(map.flux[i]);
-            sums.position[c] += position * weight;
-            sums.normal[c] += glm::dvec3(map.normal[i]) * weight;
-            sums.square[c] += glm::dot(position, position) * weight;
-            sums.weight[c] += weight;
-            sums.flux[c] += glm::dvec3(map.flux[i]);
-            sums.area[c] += map.area[i];
-            ++sums.members[c];
-        }
+        add_texels({maps.maps[m], cluster.data(), first, begin, end}, origins, parts[piece]);
     });
-    ClusterSums all(clusters);
-    for (const ClusterSums& part : parts)
-        for (std::size_t c = 0; c < clusters; ++c) {
-            all.position[c] += part.position[c], all.normal[c] += part.normal[c], all.flux[c] += part.flux[c];
-            all.area[c] += part.area[c], all.members[c] += part.members[c];
-            all.weight[c] += part.weight[c], all.square[c] += part.square[c];
-        }
+    ClusterSums all{std::move(origins), std::vector<ClusterSum>(clusters)};
+    for (const auto& part : parts)
+        for (std::size_t c = 0; c < clusters; ++c) all.sums[c] += part[c];
     return all;
 }
 
 std::vector<std::uint32_t> pick_members(const LightMaps& maps, const Buffer<std::uint32_t>& cluster, std::span<const vec3> places,
                                         Pick pick) {
-    struct Best {
-        float distance;
-        std::uint32_t texel = no_virtual_light;
-    };
-    const float sign = pick == Pick::nearest ? 1.0f : -1.0f;
-    std::vector<std::vector<Best>> parts(sum_pieces,
-                                         std::vector<Best>(places.size(), Best{std::numeric_limits<float>::infinity()}));
+    std::vector<std::vector<PickedTexel>> parts(sum_pieces, std::vector<PickedTexel>(places.size()));
     for_pieces(maps, [&](std::size_t piece, std::size_t m, std::size_t begin, std::size_t end, std::size_t first) {
-        for (std::size_t i = begin; i < end; ++i) {
-            const std::uint32_t c = cluster[first + i];
-            if (c == no_virtual_light) continue;
-            const vec3 to = maps.maps[m].position[i] - places[c];
-            const float distance = sign * glm::dot(to, to);
-            Best& best = parts[piece][c];
-            if (distance < best.distance) best = {distance, static_cast<std::uint32_t>(first + i)};
-        }
+        pick_texels({maps.maps[m], cluster.data(), first, begin, end}, places, pick == Pick::furthest, parts[piece]);
     });
     std::vector<std::uint32_t> picked(places.size(), no_virtual_light);
     for (std::size_t c = 0; c < places.size(); ++c) {

@@ -7,6 +7,7 @@
 #include "direct/reflective_shadow_map.h"
 #include "virtual_lights/cluster/kmeans.h"
 #include "virtual_lights/cluster/nearest_centre.h"
+#include "virtual_lights/cluster/texel_runs.h"
 
 namespace interreflect {
 
@@ -38,28 +39,21 @@ ClusterCentre centre_at(const LightMaps& maps, const TexelMetric& metric, std::s
 std::uint64_t assign_texels(const KMeans& technique, const LightMaps& maps, const TexelMetric& metric,
                             std::span<const ClusterCentre> centres, Buffer<std::uint32_t>& cluster);
 
-/// Over the texels of each cluster; a texel's weight is the luminance of its flux.
+/// Over the texels of each cluster.
 struct ClusterSums {
-    std::vector<glm::dvec3> position, normal, flux;  // the first two weighted
-    std::vector<double> weight, square, area;        // square: weighted, of the position's distance from the origin
-    std::vector<std::uint32_t> members;
+    std::vector<vec3> origin;  // of the places that are summed
+    std::vector<ClusterSum> sums;
 
-    explicit ClusterSums(std::size_t n)
-        : position(n, glm::dvec3(0)),
-          normal(n, glm::dvec3(0)),
-          flux(n, glm::dvec3(0)),
-          weight(n, 0.0),
-          square(n, 0.0),
-          area(n, 0.0),
-          members(n, 0) {}
-    vec3 mean(std::size_t c) const { return vec3(position[c] / weight[c]); }
+    std::uint32_t members(std::size_t c) const { return sums[c].members; }
+    vec3 mean(std::size_t c) const { return origin[c] + vec3(sums[c].position / sums[c].weight); }
     /// Of the disk with the same spread about its middle: a disk of radius R has a mean square distance of R^2 / 2.
     double spread_area(std::size_t c) const {
-        const glm::dvec3 middle = position[c] / weight[c];
-        return 2.0 * std::numbers::pi * std::fmax(square[c] / weight[c] - glm::dot(middle, middle), 0.0);
+        const glm::dvec3 middle = sums[c].position / sums[c].weight;
+        return 2.0 * std::numbers::pi * std::fmax(sums[c].square / sums[c].weight - glm::dot(middle, middle), 0.0);
     }
 };
-ClusterSums sum_texels(const LightMaps& maps, const Buffer<std::uint32_t>& cluster, std::size_t clusters);
+/// `origins`: of each cluster, near its texels.
+ClusterSums sum_texels(const LightMaps& maps, const Buffer<std::uint32_t>& cluster, std::vector<vec3> origins);
 
 /// The member next to a place of each cluster, or furthest from it: numbers of texels over all maps; no_virtual_light without
 /// members.

@@ -27,15 +27,17 @@ class Clustering {
     void assign() { strays_ = assign_texels(technique_, maps_, metric_, centres_, cluster_); }
     /// Centres move to the mean of their texels.
     void average() {
-        sums_ = sum_texels(maps_, cluster_, centres_.size());
+        std::vector<vec3> origins;
+        for (const ClusterCentre& centre : centres_) origins.push_back(centre.position);
+        sums_ = sum_texels(maps_, cluster_, std::move(origins));
         means_.resize(centres_.size());
-        for (std::size_t c = 0; c < centres_.size(); ++c) means_[c] = sums_.members[c] > 0 ? sums_.mean(c) : vec3(0);
+        for (std::size_t c = 0; c < centres_.size(); ++c) means_[c] = sums_.members(c) > 0 ? sums_.mean(c) : vec3(0);
         nearest_ = pick_members(maps_, cluster_, means_, Pick::nearest);
         for (std::size_t c = 0; c < centres_.size(); ++c) {
-            if (sums_.members[c] == 0) continue;
+            if (sums_.members(c) == 0) continue;
             centres_[c] = centre_of_texel(nearest_[c]);
-            const auto length = static_cast<float>(glm::length(sums_.normal[c]));
-            if (length > 0) centres_[c].normal = vec3(sums_.normal[c]) / length;
+            const auto length = static_cast<float>(glm::length(sums_.sums[c].normal));
+            if (length > 0) centres_[c].normal = vec3(sums_.sums[c].normal) / length;
             centres_[c].position = means_[c];
         }
     }
@@ -43,14 +45,14 @@ class Clustering {
     std::uint64_t reseed() {
         std::vector<std::uint32_t> order(centres_.size());
         std::iota(order.begin(), order.end(), 0U);
-        std::ranges::stable_sort(order, [&](std::uint32_t a, std::uint32_t b) { return sums_.members[a] > sums_.members[b]; });
+        std::ranges::stable_sort(order, [&](std::uint32_t a, std::uint32_t b) { return sums_.members(a) > sums_.members(b); });
         std::vector<std::uint32_t> furthest;
         std::size_t next = 0;
         std::uint64_t reseeded = 0;
         for (std::size_t c = 0; c < centres_.size(); ++c) {
-            if (sums_.members[c] > 0) continue;
+            if (sums_.members(c) > 0) continue;
             if (furthest.empty()) furthest = pick_members(maps_, cluster_, means_, Pick::furthest);
-            if (next == order.size() || sums_.members[order[next]] < 2) break;
+            if (next == order.size() || sums_.members(order[next]) < 2) break;
             centres_[c] = centre_of_texel(furthest[order[next++]]);
             ++reseeded;
         }
@@ -76,14 +78,14 @@ class Clustering {
         const ClusterCentre& centre = centres_[c];
         const ReflectiveShadowMap& map = maps_.maps[static_cast<std::size_t>(centre.map)];
         const std::size_t texel = static_cast<std::size_t>(centre.y) * map.size + centre.x;
-        const auto members = static_cast<float>(sums_.members[c]);
+        const auto members = static_cast<float>(sums_.members(c));
         made.position[c] = technique_.centre == "mean" ? centre.position : map.position[texel];
         made.normal[c] = centre.normal;
-        made.flux[c] = technique_.flux == "centre" ? map.flux[texel] * members : vec3(sums_.flux[c]);
-        made.area[c] = static_cast<float>(technique_.area == "texels" || members < 2 ? sums_.area[c] : sums_.spread_area(c));
+        made.flux[c] = technique_.flux == "centre" ? map.flux[texel] * members : vec3(sums_.sums[c].flux);
+        made.area[c] = static_cast<float>(technique_.area == "texels" || members < 2 ? sums_.sums[c].area : sums_.spread_area(c));
         made.offset[c] = map.offset[texel];
         made.texel[c] = static_cast<std::uint32_t>(first_[static_cast<std::size_t>(centre.map)] + texel);
-        made.members[c] = sums_.members[c];
+        made.members[c] = sums_.members(c);
     }
 
     const KMeans& technique_;
@@ -92,7 +94,7 @@ class Clustering {
     std::vector<std::size_t> first_;
     std::vector<ClusterCentre> centres_;
     Buffer<std::uint32_t> cluster_;
-    ClusterSums sums_{0};
+    ClusterSums sums_;
     std::vector<vec3> means_;
     std::vector<std::uint32_t> nearest_;
     std::uint64_t strays_ = 0;
