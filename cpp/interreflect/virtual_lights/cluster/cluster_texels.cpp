@@ -170,12 +170,8 @@ std::uint64_t assign_texels(const KMeans& technique, const LightMaps& maps, cons
         }
         Strays lost;
         const auto begin = static_cast<std::size_t>(band.y0) * map.size, end = static_cast<std::size_t>(band.y1) * map.size;
-        for (std::size_t i = begin; i < end; ++i) {
-            if (!sends(map, i))
-                nearest[i] = no_virtual_light;
-            else if (nearest[i] == no_virtual_light)
-                lost.add(map, i, nearest + i);
-        }
+        for (std::size_t i = begin; i < end; ++i)
+            if (nearest[i] == no_virtual_light && sends(map, i)) lost.add(map, i, nearest + i);
         lost.assign(flux_scale, metric.weights(), candidates.all());
         strays += lost.cluster.size();
     });

@@ -55,7 +55,13 @@ void find_nearest(const TexelRow& row, const MetricWeights& weights, const Metri
             }
             position = rest[0], normal = rest[1], flux = rest[2];
         }
-        const Vec3 texel_position = load3(position), texel_normal = load3(normal), texel_flux = scaled(load3(flux), scale);
+        const Vec3 sent = load3(flux);
+        const auto lit = hn::Gt(hn::Max(sent.x, hn::Max(sent.y, sent.z)), hn::Zero(d));
+        if (hn::AllFalse(d, lit)) {
+            std::fill_n(nearest + x, left, no_virtual_light);
+            continue;
+        }
+        const Vec3 texel_position = load3(position), texel_normal = load3(normal), texel_flux = scaled(sent, scale);
         const Vector column = hn::Iota(d, static_cast<float>(x));
         Vector least = hn::Set(d, 3e38f);
         Vector bound = hn::Inf(d);
@@ -74,7 +80,7 @@ void find_nearest(const TexelRow& row, const MetricWeights& weights, const Metri
             bound = hn::Mul(slack, hn::Mul(least, least));
             winner = hn::IfThenElse(hn::RebindMask(du, nearer), hn::Set(du, centre.cluster), winner);
         }
-        hn::Store(winner, du, found);
+        hn::Store(hn::IfThenElse(hn::RebindMask(du, lit), winner, hn::Set(du, no_virtual_light)), du, found);
         std::copy(found, found + left, nearest + x);
     }
 }

@@ -24,7 +24,7 @@ struct TexelRow {
 };
 
 /// Writes the cluster of the centre with the least distance to every texel, the first of several; no_virtual_light where none may
-/// win it.
+/// win it, or where it sends nothing on.
 void nearest_centres(const TexelRow& row, const MetricWeights& weights, std::span<const MetricCentre> centres,
                      std::uint32_t* nearest);
 

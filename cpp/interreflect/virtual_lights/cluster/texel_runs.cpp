@@ -55,26 +55,42 @@ struct Rest {
     }
 };
 
-/// Calls body.same(cluster, mask of lanes, texels, number of the first) for every cluster of every vector of texels.
+HWY_INLINE std::uint32_t bits_of(hn::Mask<Unsigned> mask) {
+    std::uint8_t bytes[8] = {};
+    hn::StoreMaskBits(Unsigned(), mask, bytes);
+    return bytes[0] | static_cast<std::uint32_t>(bytes[1]) << 8;
+}
+
+/// For every cluster of every vector of texels: body.same(cluster, mask of lanes, texels, number of the first) or, where it is
+/// not the last one's and has few lanes, body.one(cluster, texels, lane, number) for each.
 template <class Body>
 HWY_INLINE void for_clusters(const TexelRange& range, Body& body) {
+    constexpr int few = 3;
     const Unsigned du;
     const std::size_t lanes = hn::Lanes(du);
     const ReflectiveShadowMap& map = range.map;
+    const std::uint32_t* const all = range.cluster + range.first;
     Rest rest;
     for (std::size_t i = range.begin; i < range.end; i += lanes) {
-        Texels texels{map.position.data() + i, map.normal.data() + i, map.flux.data() + i, map.area.data() + i,
-                      range.cluster + range.first + i};
+        Texels texels{map.position.data() + i, map.normal.data() + i, map.flux.data() + i, map.area.data() + i, all + i};
         const std::size_t left = range.end - i;
         if (left < lanes) texels = rest.filled(texels, left);
         const auto clusters = hn::LoadU(du, texels.cluster);
-        for (std::size_t lane = 0; lane < lanes; ++lane) {
-            const std::uint32_t cluster = texels.cluster[lane];
-            if (cluster == no_virtual_light || std::find(texels.cluster, texels.cluster + lane, cluster) != texels.cluster + lane)
-                continue;
+        std::uint32_t open = bits_of(hn::Ne(clusters, hn::Set(du, no_virtual_light)));
+        while (open != 0) {
+            const std::uint32_t cluster = texels.cluster[__builtin_ctz(open)];
             const auto same = hn::Eq(clusters, hn::Set(du, cluster));
-            body.same(cluster, hn::RebindMask(Tag(), same), hn::CountTrue(du, same), texels, range.first + i);
-            if (hn::AllTrue(du, same)) break;
+            std::uint32_t mine = bits_of(same);
+            open &= ~mine;
+            const int count = __builtin_popcount(mine);
+            if (count > few || cluster == body.current) {
+                body.same(cluster, hn::RebindMask(Tag(), same), static_cast<std::uint32_t>(count), texels, range.first + i);
+                continue;
+            }
+            for (; mine != 0; mine &= mine - 1) {
+                const auto lane = static_cast<std::size_t>(__builtin_ctz(mine));
+                body.one(cluster, texels, lane, range.first + i + lane);
+            }
         }
     }
     body.end();
@@ -88,7 +104,7 @@ struct Summing {
     Vec3 position{}, normal{}, flux{}, origin{};
     Vector weight{}, square{}, area{};
 
-    HWY_INLINE void same(std::uint32_t cluster, LaneMask mask, std::size_t count, const Texels& texels, std::size_t) {
+    HWY_INLINE void same(std::uint32_t cluster, LaneMask mask, std::uint32_t count, const Texels& texels, std::size_t) {
         if (cluster != current) end(), begin(cluster);
         const Tag d;
         const Vec3 lit = load_vectors(texels.flux), to = difference(load_vectors(texels.position), origin);
@@ -102,7 +118,14 @@ struct Summing {
         flux = {hn::Add(flux.x, hn::IfThenElseZero(mask, lit.x)), hn::Add(flux.y, hn::IfThenElseZero(mask, lit.y)),
                 hn::Add(flux.z, hn::IfThenElseZero(mask, lit.z))};
         area = hn::Add(area, hn::IfThenElseZero(mask, hn::LoadU(d, texels.area)));
-        members += static_cast<std::uint32_t>(count);
+        members += count;
+    }
+    HWY_INLINE void one(std::uint32_t cluster, const Texels& texels, std::size_t lane, std::size_t) {
+        const glm::dvec3 to(texels.position[lane] - origins[cluster]), lit(texels.flux[lane]);
+        const double by = luminance(texels.flux[lane]);
+        const ClusterSum single{to * by, glm::dvec3(texels.normal[lane]) * by, lit, by, glm::dot(to, to) * by, texels.area[lane],
+                                1};
+        sums[cluster] += single;
     }
     HWY_INLINE void begin(std::uint32_t cluster) {
         const Vector zero = hn::Zero(Tag());
@@ -131,7 +154,7 @@ struct Picking {
     Vector least{};
     hn::Vec<Unsigned> winner{};
 
-    HWY_INLINE void same(std::uint32_t cluster, LaneMask mask, std::size_t, const Texels& texels, std::size_t first) {
+    HWY_INLINE void same(std::uint32_t cluster, LaneMask mask, std::uint32_t, const Texels& texels, std::size_t first) {
         if (cluster != current) end(), begin(cluster);
         const Unsigned du;
         const Vec3 to = difference(load_vectors(texels.position), place);
@@ -139,6 +162,11 @@ struct Picking {
         const auto nearer = hn::And(mask, hn::Lt(distance, least));
         least = hn::IfThenElse(nearer, distance, least);
         winner = hn::IfThenElse(hn::RebindMask(du, nearer), hn::Iota(du, static_cast<std::uint32_t>(first)), winner);
+    }
+    HWY_INLINE void one(std::uint32_t cluster, const Texels& texels, std::size_t lane, std::size_t number) {
+        const vec3 to = texels.position[lane] - places[cluster];
+        const float distance = hn::GetLane(sign) * glm::dot(to, to);
+        if (distance < picked[cluster].distance) picked[cluster] = {distance, static_cast<std::uint32_t>(number)};
     }
     HWY_INLINE void begin(std::uint32_t cluster) {
         least = hn::Inf(Tag());
