@@ -28,6 +28,7 @@ VARIANTS = [
     ("textured_light_box", {}), ("textured_light_box", {"grating": 8}),
     ("foliage", {"length": 0.2}), ("foliage", {"length": 0.1, "seed": 7}), ("wires", {}), ("wires", {"width": 0.004, "count": 9}),
     ("depth_edge", {}), ("depth_edge", {"gap": 0.8}), ("ball_in_sky", {}), ("ball_in_sky", {"radius": 0.02}),
+    ("corner", {"light": "sun"}), ("lit_patch", {}), *(("lit_patch", {"blocker": kind}) for kind in ("none", "edge", "edges", "slit")),
 ]  # fmt: skip
 
 

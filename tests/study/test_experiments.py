@@ -7,6 +7,7 @@ from pathlib import Path
 import pandas as pd
 import pytest
 from experiments import where_do_caches_break as caches
+from experiments import where_do_virtual_lights_break as virtual
 from experiments import where_do_voxels_break as where
 from experiments.figures import draw
 from matplotlib.figure import Figure
@@ -54,7 +55,8 @@ def test_an_experiment_is_a_question_whose_records_make_its_chart(path, tmp_path
 
 
 def test_what_is_no_study_measures_by_itself():
-    assert [path.stem for path in FILES if path not in EXPERIMENTS] == ["where_do_caches_break", "where_do_voxels_break"]
+    alone = ["where_do_caches_break", "where_do_virtual_lights_break", "where_do_voxels_break"]
+    assert [path.stem for path in FILES if path not in EXPERIMENTS] == alone
 
 
 @pytest.fixture(scope="module")
@@ -115,3 +117,21 @@ def test_break_points_of_caches_cover_every_way_to_share_one():
     for stage, names in used.items():
         assert names == {technique.__name__ for technique in ir.techniques(stage)} - {"CachePerPixel"}  # which pixels do not share
     assert set(caches.FAILURES) <= {row.name for row in ir.stability.failures}
+
+
+def test_break_points_of_virtual_lights_are_measured_for_clusters_and_maps(tmp_path):
+    flux, umbra = "flux of clusters on chequers", "light in an umbra by pull and push"
+    small = {
+        "clustered": ({name: virtual.clustered[name].replace(map_size=64) for name in ("KMeans", "flux at the centre")}, [flux]),
+        "mapped": ({"TracedVisibility": virtual.mapped["TracedVisibility"].replace(map_size=64)}, [umbra]),
+    }
+    found = virtual.measure(tmp_path, small, sweep=2, bisections=1)
+    assert found["clustered"].cell("KMeans", flux).outcome == "never" != found["clustered"].cell("flux at the centre", flux).outcome
+    assert found["mapped"].cell("TracedVisibility", umbra).outcome == "never" and (tmp_path / "mapped.html").exists()
+    virtual.chart(found).canvas.draw()
+
+
+def test_break_points_of_virtual_lights_cover_every_shade_and_filter():
+    for stage, ways in (("shade_lights", virtual.shaded), ("filter_shadows", virtual.filtered)):
+        assert {m.knobs()[stage] for m in ways.values()} == {technique.__name__ for technique in ir.techniques(stage)}
+    assert {name for _, rows in virtual.ATLASES.values() for name in rows} <= {row.name for row in ir.stability.failures}

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from interreflect.scenes.builtin.glossy_receiver import glossy_receiver as glossy_receiver
     from interreflect.scenes.builtin.grille import grille as grille
     from interreflect.scenes.builtin.integrating_sphere import integrating_sphere as integrating_sphere
+    from interreflect.scenes.builtin.lit_patch import lit_patch as lit_patch
     from interreflect.scenes.builtin.lone_ball import lone_ball as lone_ball
     from interreflect.scenes.builtin.opaque_layer import opaque_layer as opaque_layer
     from interreflect.scenes.builtin.opposed_lights import opposed_lights as opposed_lights
@@ -55,6 +56,7 @@ _MODULES = {
     "glossy_receiver": "glossy_receiver",
     "grille": "grille",
     "integrating_sphere": "integrating_sphere",
+    "lit_patch": "lit_patch",
     "lone_ball": "lone_ball",
     "opaque_layer": "opaque_layer",
     "opposed_lights": "opposed_lights",

@@ -7,8 +7,9 @@ from interreflect.stability.invariants import Invariance, invariance
 from interreflect.stability.moving_failures import MOVING
 from interreflect.stability.still_failures import STILL
 from interreflect.stability.temporal import Played, motion
+from interreflect.stability.virtual_light_failures import VIRTUAL_LIGHTS
 from interreflect.stability.voxel_failures import VOXELS
 
-failures: tuple[Failure, ...] = (*VOXELS, *CACHES, *STILL, *MOVING)
+failures: tuple[Failure, ...] = (*VOXELS, *CACHES, *VIRTUAL_LIGHTS, *STILL, *MOVING)
 
 __all__ = ["Atlas", "Failure", "Invariance", "Played", "Reading", "atlas", "failures", "invariance", "motion"]

@@ -30,7 +30,7 @@ HERE = Path(__file__).resolve().parent
 # Files of this package that decide what is measured; the others decide where, or draw.
 MEASURING = (
     "cache_failures.py", "failure.py", "moving_failures.py", "reprojection.py", "similar.py", "still_failures.py", "temporal.py",
-    "voxel_failures.py",
+    "virtual_light_failures.py", "voxel_failures.py",
 )  # fmt: skip
 
 

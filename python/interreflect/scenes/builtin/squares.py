@@ -11,7 +11,7 @@ from interreflect.scenes.builtin.knobs import Knob, built_in
 from interreflect.scenes.builtin.measured import facing_camera
 from interreflect.scenes.builtin.patterns import encoded
 from interreflect.scenes.builtin.shapes import mesh, quad
-from interreflect.scenes.values import Camera, Light, Material, Mesh, Scene, SpotLight, Texture
+from interreflect.scenes.values import Camera, DirectionalLight, Light, Material, Mesh, Scene, SpotLight, Texture
 
 FLOOR = quad((-0.5, 0, 0.5), (1, 0, 0), (0, 0, -1))
 
@@ -42,7 +42,7 @@ def facing_squares(
 
 @built_in
 def corner(
-    light: Annotated[str, Knob("the wall (black, of exitance 1), or a spot on a wall that reflects", choices=("wall", "spot"))] = "wall",
+    light: Annotated[str, Knob("the wall (black, of exitance 1), or what lights it", choices=("wall", "spot", "sun"))] = "wall",
     albedo: Annotated[float, Knob("of what reflects", 0, 1)] = 0.5,
     aim: Annotated[float, Knob("height at which the spot's axis meets the wall", 0, 1)] = 0.45,
     cap: Annotated[float, Knob("half angle of the spot", 1, 40, unit="degrees")] = 14.0,
@@ -51,7 +51,7 @@ def corner(
     """A floor and a wall, unit squares with a shared edge: where virtual point lights are singular.
 
     Camera "receiver" sees exactly the floor, every part of it alike; "view" sees both. The spot stands .1 to .6 above the floor,
-    level with its aim or above it.
+    level with its aim or above it. The sun shines along the floor and gives the wall an irradiance of 2.
     """
     wall = quad((-0.5, 0, 0.5), (0, 0, -1), (0, 1, 0))
     material = emitter_material() if light == "wall" else Material(name="wall", albedo=(albedo,) * 3)
@@ -59,11 +59,12 @@ def corner(
         "receiver": facing_camera((0, 0, 0), (0, 1, 0), half_width=0.5, distance=0.5),
         "view": Camera(position=(1.3, 0.8, 1.2), target=(-0.2, 0.35, 0), fov_x=50, size=(512, 512)),
     }
-    if fields and light == "spot":
+    if fields and light != "wall":
         material = material.replace(albedo_map=Texture(encoded(_chequers(fields, albedo))), albedo=(1, 1, 1))
-    lights = [_spot(aim, cap)] if light == "spot" else []
+    along_the_floor = DirectionalLight(direction=(-1, 0, 0), irradiance=(2, 2, 2))
+    lights: dict[str, list[Light]] = {"wall": [], "spot": [_spot(aim, cap)], "sun": [along_the_floor]}
     corners = np.array([(0, 0), (1, 0), (1, 1), (0, 1)], float)
-    return Scene(meshes=[_receiver(albedo), mesh(wall, material, texcoords=corners)], lights=lights, cameras=cameras)
+    return Scene(meshes=[_receiver(albedo), mesh(wall, material, texcoords=corners)], lights=lights[light], cameras=cameras)
 
 
 def _receiver(albedo: float) -> Mesh:
