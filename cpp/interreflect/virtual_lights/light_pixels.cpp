@@ -135,13 +135,20 @@ VirtualLight light_pixels(const LightPixels& how, const VirtualLights& lights, c
         const auto phase_light = std::make_unique<PhaseLight>(how, lights, shadows, gbuffer, scene, intersector, extent);
         for (int phase = 0; phase < block.phases(); ++phase) {
             phase_light->begin();
-            for (int y = first_of(tile.y0, phase / block.width, block.height); y < tile.y1; y += block.height)
-                for (int x = first_of(tile.x0, phase % block.width, block.width); x < tile.x1; x += block.width) {
-                    const std::size_t pixel = static_cast<std::size_t>(y) * gbuffer.width + x;
-                    irradiance[pixel] = vec4(0);
-                    if (glossy) radiance[pixel] = vec4(0);
-                    if (gbuffer.hit(pixel)) phase_light->add(pixel);
-                }
+            const int x0 = first_of(tile.x0, phase % block.width, block.width);
+            const int y0 = first_of(tile.y0, phase / block.width, block.height);
+            const auto visit = [&](int x, int y) {
+                if (x >= tile.x1 || y >= tile.y1) return;
+                const std::size_t pixel = static_cast<std::size_t>(y) * gbuffer.width + x;
+                irradiance[pixel] = vec4(0);
+                if (glossy) radiance[pixel] = vec4(0);
+                if (gbuffer.hit(pixel)) phase_light->add(pixel);
+            };
+            // Squares of 4 x 4: a vector of neighbours looks into the same lines of a map, and fewer vectors are lit in part.
+            constexpr int square = 4;
+            for (int y = y0; y < tile.y1; y += square * block.height)
+                for (int x = x0; x < tile.x1; x += square * block.width)
+                    for (int i = 0; i < square * square; ++i) visit(x + i % square * block.width, y + i / square * block.height);
             if (phase_light->empty()) continue;
             phase_light->gather(static_cast<std::size_t>(phase), static_cast<std::size_t>(block.phases()));
             phase_light->write(irradiance, radiance);

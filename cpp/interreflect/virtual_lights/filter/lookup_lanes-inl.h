@@ -14,6 +14,18 @@ namespace interreflect {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
+/// Estimates with one step of Newton's: a few units in the last place.
+HWY_INLINE Vector reciprocal(Vector a) {
+    const Tag d;
+    const Vector estimate = hn::ApproximateReciprocal(a);
+    return hn::Mul(estimate, hn::NegMulAdd(a, estimate, hn::Set(d, 2.0f)));
+}
+HWY_INLINE Vector inverse_root(Vector a) {
+    const Tag d;
+    const Vector estimate = hn::ApproximateReciprocalSqrt(a), half = hn::Mul(hn::Set(d, 0.5f), hn::Mul(a, estimate));
+    return hn::Mul(estimate, hn::NegMulAdd(half, estimate, hn::Set(d, 1.5f)));
+}
+
 /// Directions in the light's frame, and where they lie in its map.
 struct Towards {
     Vec3 direction;  // unit
@@ -23,8 +35,10 @@ struct Towards {
     static HWY_INLINE Towards plane(Vector px, Vector py) {
         const Tag d;
         const Vector one = hn::Set(d, 1.0f), half = hn::Set(d, 0.5f);
-        const Vector length = hn::Sqrt(hn::MulAdd(px, px, hn::MulAdd(py, py, one)));
-        const Vector inverse = hn::Div(one, length), scale = hn::Div(half, hn::Add(length, one));
+        // Beyond the largest, directions lie on the horizon whatever the length.
+        const Vector length2 = hn::Min(hn::MulAdd(px, px, hn::MulAdd(py, py, one)), hn::Set(d, 1e30f));
+        const Vector inverse = inverse_root(length2);
+        const Vector scale = hn::Mul(half, reciprocal(hn::MulAdd(length2, inverse, one)));
         return {{hn::Mul(px, inverse), hn::Mul(py, inverse), inverse}, hn::MulAdd(px, scale, half), hn::MulAdd(py, scale, half)};
     }
     /// From a place of the map; beyond the horizon's circle, the horizon.
@@ -44,9 +58,9 @@ struct Towards {
 
 /// Pixels in a light's frame, with the planes of their surfaces.
 struct Receiving {
-    Vec3 local, plane;  // position; geometric normal
-    Vector distance, height;
-    LaneMask lit;  // that the light reaches at all
+    Vec3 local, plane;        // position; geometric normal
+    Vector distance, height;  // height: of the plane over the light, negative where it faces the light
+    LaneMask lit;             // that the light reaches at all
 
     HWY_INLINE Receiving(const ShadowedLight& light, const Receivers& receivers, int first, LaneMask reached) : lit(reached) {
         const Tag d;
@@ -64,53 +78,60 @@ struct Receiving {
         distance = hn::Sqrt(dot(local, local));
         height = dot(plane, local);
     }
-    /// How far along a direction the pixel's surface lies, were it flat: its plane, unless that is far from the pixel's own
-    /// distance.
-    HWY_INLINE Vector surface(const Vec3& direction) const {
+    /// Where height / slope, how far along a direction the pixel's plane lies, is about the pixel's own distance. Both are
+    /// negative where the plane faces the light. Elsewhere the pixel's surface is taken to lie at its distance.
+    HWY_INLINE LaneMask plane_is_near(Vector along, Vector slope) const {
         const Tag d;
-        const Vector along = hn::Div(height, dot(plane, direction));
-        const auto near =
-            hn::And(hn::Ge(along, hn::Mul(distance, hn::Set(d, 0.25f))), hn::Le(along, hn::Mul(distance, hn::Set(d, 4.0f))));
-        return hn::IfThenElse(near, along, distance);
+        const Vector least = hn::Mul(hn::Mul(distance, slope), hn::Set(d, 0.25f));
+        return hn::And(hn::Le(along, least), hn::Ge(along, hn::Mul(least, hn::Set(d, 16.0f))));
     }
+};
+
+/// What is seen, and the lanes where it stands between the light and the pixel's surface.
+struct Seen {
+    Vector planar;  // depth along the light's normal
+    LaneMask blocks;
 };
 
 /// A light's shadow map.
 class MapLookup {
   public:
     explicit HWY_INLINE MapLookup(const ShadowedLight& light)
-        : map_(light.map()), size_(light.shadows.size), bias_(hn::Set(Tag(), light.shadows.bias)) {}
+        : map_(light.map()),
+          size_(hn::Set(Tag(), static_cast<float>(light.shadows.size))),
+          bias_(hn::Set(Tag(), light.shadows.bias)) {}
 
-    /// Radial distances of what is seen. Directions become those of the texels' middles, so that a flat surface agrees with its
-    /// own map however it is lit.
-    HWY_INLINE Vector depth(Towards& to, LaneMask) const {
+    /// Directions are those of the texels' middles, so that a flat surface agrees with its own map however it is lit. A middle's
+    /// is (2 px, 2 py, 1 - r^2) / (1 + r^2): its length is multiplied out of all comparisons.
+    HWY_INLINE Seen operator()(const Receiving& pixels, const Towards& to, LaneMask) const {
         const Tag d;
-        const hn::RebindToSigned<Tag> di;
-        const Vector size = hn::Set(d, static_cast<float>(size_));
-        const auto last = hn::Set(di, size_ - 1), zero = hn::Zero(di);
-        const auto column = hn::Min(hn::Max(hn::ConvertTo(di, hn::Mul(to.x, size)), zero), last);
-        const auto row = hn::Min(hn::Max(hn::ConvertTo(di, hn::Mul(to.y, size)), zero), last);
-        const Vector one = hn::Set(d, 1.0f), two = hn::Set(d, 2.0f), width = hn::Div(two, size);
-        const auto middle = [&](auto texel) HWY_ATTR {
-            return hn::MulSub(hn::ConvertTo(d, texel), width, hn::Sub(one, hn::Mul(width, hn::Set(d, 0.5f))));
-        };
-        const Vector px = middle(column), py = middle(row);
-        const Vector r2 = hn::MulAdd(px, px, hn::Mul(py, py)), scale = hn::Div(one, hn::Add(one, r2));
-        to.direction = {hn::Mul(hn::Mul(two, px), scale), hn::Mul(hn::Mul(two, py), scale), hn::Mul(hn::Sub(one, r2), scale)};
-        return hn::GatherIndex(d, map_, hn::Add(hn::Mul(row, hn::Set(di, size_)), column));
+        const Vector zero = hn::Zero(d), one = hn::Set(d, 1.0f), two = hn::Set(d, 2.0f);
+        const Vector last = hn::Sub(size_, one), width = hn::Div(two, size_), first = hn::NegMulAdd(width, hn::Set(d, 0.5f), one);
+        const auto texel = [&](Vector v) HWY_ATTR { return hn::Floor(hn::Min(hn::Max(hn::Mul(v, size_), zero), last)); };
+        const Vector column = texel(to.x), row = texel(to.y);
+        // Whole numbers below 2^24.
+        const Vector depth = hn::GatherIndex(d, map_, hn::ConvertTo(hn::RebindToSigned<Tag>(), hn::MulAdd(row, size_, column)));
+        const Vector px = hn::MulSub(column, width, first), py = hn::MulSub(row, width, first);
+        const Vector r2 = hn::MulAdd(px, px, hn::Mul(py, py)), along_normal = hn::Sub(one, r2);
+        const Vec3 direction{hn::Add(px, px), hn::Add(py, py), along_normal};
+        const Vector length = hn::Add(one, r2);
+        const Vector slope = dot(pixels.plane, direction), height = hn::Mul(pixels.height, length);
+        const Vector nearer = hn::Add(depth, bias_);
+        const LaneMask flat = pixels.plane_is_near(height, slope);
+        const LaneMask blocks =
+            hn::Lt(hn::IfThenElse(flat, height, nearer), hn::IfThenElse(flat, hn::Mul(nearer, slope), pixels.distance));
+        return {hn::Div(hn::Mul(depth, along_normal), length), blocks};
     }
-    HWY_INLINE Vector bias(Vector) const { return bias_; }
     /// Half a texel's width where a pixel is seen, in the plane at distance 1.
     HWY_INLINE Vector half_texel(const Vec3& direction) const {
         const Tag d;
-        const Vector turn = hn::Div(hn::Add(hn::Set(d, 1.0f), direction.z), hn::Set(d, static_cast<float>(size_)));
+        const Vector turn = hn::Div(hn::Add(hn::Set(d, 1.0f), direction.z), size_);
         return hn::Div(turn, hn::Max(hn::Mul(direction.z, direction.z), hn::Set(d, 1e-4f)));
     }
 
   private:
     const float* map_;
-    int size_;
-    Vector bias_;
+    Vector size_, bias_;
 };
 
 /// The scene itself, by rays from the light's middle.
@@ -119,7 +140,20 @@ class RayLookup {
     explicit HWY_INLINE RayLookup(const ShadowedLight& light)
         : light_(light), origin_(light.disk.position + light.disk.normal * light.disk.offset) {}
 
-    HWY_INLINE Vector depth(const Towards& to, LaneMask active) const {
+    HWY_INLINE Seen operator()(const Receiving& pixels, const Towards& to, LaneMask active) const {
+        const Tag d;
+        const Vector depth = trace(to, active), slope = dot(pixels.plane, to.direction);
+        const Vector surface =
+            hn::IfThenElse(pixels.plane_is_near(pixels.height, slope), hn::Div(pixels.height, slope), pixels.distance);
+        // Rounding, and the light's own offset.
+        const Vector bias = hn::MulAdd(surface, hn::Set(d, 1e-3f), hn::Set(d, 4.0f * light_.disk.offset));
+        return {hn::Mul(depth, to.direction.z), hn::Lt(depth, hn::Sub(surface, bias))};
+    }
+    HWY_INLINE Vector half_texel(const Vec3&) const { return hn::Zero(Tag()); }
+
+  private:
+    /// Radial distances.
+    HWY_INLINE Vector trace(const Towards& to, LaneMask active) const {
         const Tag d;
         alignas(64) float x[16], y[16], z[16], found[16];
         hn::Store(to.direction.x, d, x), hn::Store(to.direction.y, d, y), hn::Store(to.direction.z, d, z);
@@ -133,29 +167,10 @@ class RayLookup {
         for (int i = 0; i < static_cast<int>(hn::Lanes(d)); ++i) found[i] = packet.far[i];
         return hn::Load(d, found);
     }
-    /// Rounding, and the light's own offset.
-    HWY_INLINE Vector bias(Vector distance) const {
-        const Tag d;
-        return hn::MulAdd(distance, hn::Set(d, 1e-3f), hn::Set(d, 4.0f * light_.disk.offset));
-    }
-    HWY_INLINE Vector half_texel(const Vec3&) const { return hn::Zero(Tag()); }
 
-  private:
     const ShadowedLight& light_;
     vec3 origin_;
 };
-
-/// What is seen, and the lanes where it stands between the light and the pixel's surface.
-struct Seen {
-    Vector depth;
-    LaneMask blocks;
-};
-template <class Lookup>
-HWY_INLINE Seen look_up(const Lookup& lookup, const Receiving& pixels, Towards& to, LaneMask active) {
-    const Vector depth = lookup.depth(to, active);
-    const Vector surface = pixels.surface(to.direction);
-    return {depth, hn::Lt(depth, hn::Sub(surface, lookup.bias(surface)))};
-}
 
 }  // namespace HWY_NAMESPACE
 }  // namespace interreflect

@@ -78,47 +78,61 @@ void PointMap::draw_disk(const WorldPoint& point, float radius) {
     centre = std::min(centre, at.distance);
 }
 
+namespace {
+
+/// The mean of the texels of a square of 2 x 2 that hold anything; `right` and `below`: whether the finer level has these.
+float mean_of(const float* from, int side, bool right, bool below) {
+    const float texels[4] = {from[0], right ? from[1] : infinity, below ? from[side] : infinity,
+                             right && below ? from[side + 1] : infinity};
+    float sum = 0, known = 0;
+    for (const float d : texels) {
+        const bool holds = d < infinity;
+        sum += holds ? d : 0.0f;
+        known += holds ? 1.0f : 0.0f;
+    }
+    return known > 0 ? sum / known : infinity;
+}
+
+void pull(const float* from, int side, float* to, int half) {
+    const int whole = side / 2;
+    for (int y = 0; y < half; ++y, to += half) {
+        const float* row = from + static_cast<std::size_t>(2 * y) * side;
+        const bool below = 2 * y + 1 < side;
+        for (int x = 0; x < whole; ++x) to[x] = mean_of(row + 2 * x, side, true, below);
+        for (int x = whole; x < half; ++x) to[x] = mean_of(row + 2 * x, side, false, below);
+    }
+}
+
+void push(const float* from, int half, float* to, int side) {
+    for (int y = 0; y < side; ++y, to += side) {
+        const float* row = from + static_cast<std::size_t>(y / 2) * half;
+        for (int x = 0; x < side; ++x) to[x] = to[x] < infinity ? to[x] : row[x / 2];
+    }
+}
+
+std::uint64_t open_texels(std::span<const float> depth, std::span<const vec3> directions) {
+    std::uint64_t count = 0;
+    for (std::size_t i = 0; i < depth.size(); ++i) count += !(depth[i] < infinity) && !(directions[i].z < 0.0f) ? 1 : 0;
+    return count;
+}
+
+}  // namespace
+
+// Roofline: each level is read and written twice, from the first two caches; a third of a map's texels are those of its levels.
 Filled pull_push(std::span<float> depth, int size, int levels, std::span<const vec3> directions) {
-    struct Level {
-        int size;
-        std::vector<float> depth;
-    };
-    const auto mean_of = [](const float* from, int side, int x, int y) {
-        float sum = 0;
-        int known = 0;
-        for (int j = 2 * y; j < std::min(2 * y + 2, side); ++j)
-            for (int i = 2 * x; i < std::min(2 * x + 2, side); ++i)
-                if (const float d = from[static_cast<std::size_t>(j) * side + i]; std::isfinite(d)) sum += d, ++known;
-        return known > 0 ? sum / static_cast<float>(known) : infinity;
-    };
-    std::vector<Level> coarser;
-    for (int i = 0; i < levels; ++i) {
-        const float* from = i == 0 ? depth.data() : coarser.back().depth.data();
-        const int side = i == 0 ? size : coarser.back().size, half = (side + 1) / 2;
-        Level level{half, std::vector<float>(static_cast<std::size_t>(half) * half)};
-        for (int y = 0; y < half; ++y)
-            for (int x = 0; x < half; ++x) level.depth[static_cast<std::size_t>(y) * half + x] = mean_of(from, side, x, y);
-        coarser.push_back(std::move(level));
-        if (half == 1) break;
+    thread_local std::vector<std::vector<float>> coarser;
+    if (coarser.size() < static_cast<std::size_t>(levels)) coarser.resize(static_cast<std::size_t>(levels));
+    const std::uint64_t empty = open_texels(depth, directions);
+    std::vector<int> sides{size};
+    for (int i = 0; i < levels && (i == 0 || sides.back() > 1); ++i) {
+        const int side = sides.back(), half = (side + 1) / 2;
+        coarser[i].resize(static_cast<std::size_t>(half) * half);
+        pull(i == 0 ? depth.data() : coarser[i - 1].data(), side, coarser[i].data(), half);
+        sides.push_back(half);
     }
-    Filled counts{0, 0};
-    for (std::size_t i = coarser.size(); i-- > 0;) {
-        float* to = i == 0 ? depth.data() : coarser[i - 1].depth.data();
-        const int side = i == 0 ? size : coarser[i - 1].size;
-        for (int y = 0; y < side; ++y)
-            for (int x = 0; x < side; ++x) {
-                float& d = to[static_cast<std::size_t>(y) * side + x];
-                if (std::isfinite(d)) continue;
-                d = coarser[i].depth[static_cast<std::size_t>(y / 2) * coarser[i].size + x / 2];
-                if (i > 0 || directions[static_cast<std::size_t>(y) * side + x].z < 0.0f) continue;
-                ++counts.empty;
-                counts.filled += std::isfinite(d) ? 1 : 0;
-            }
-    }
-    if (coarser.empty())
-        for (std::size_t i = 0; i < depth.size(); ++i)
-            counts.empty += directions[i].z >= 0.0f && !std::isfinite(depth[i]) ? 1 : 0;
-    return counts;
+    for (int i = static_cast<int>(sides.size()) - 1; i-- > 0;)
+        push(coarser[i].data(), sides[i + 1], i == 0 ? depth.data() : coarser[i - 1].data(), sides[i]);
+    return {empty, empty - open_texels(depth, directions)};
 }
 
 }  // namespace interreflect
