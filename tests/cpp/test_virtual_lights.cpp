@@ -80,6 +80,15 @@ TEST(VirtualLights, TheDisksVectorIsExactWhileItIsAboveTheHorizon) {
     EXPECT_NEAR(form_factor(DiskVector{}, 1, 0.5f, 1, {-1, 0, 0}), 0, 0.12f);  // half of it is below the horizon
 }
 
+TEST(VirtualLights, TheDisksVectorIsNeverMoreThanAHemisphere) {
+    for (const float height : {1e-10f, 1e-7f, 1e-5f, 1e-3f, 0.1f})
+        for (const float sideways : {0.0f, 0.5f, 0.999999f, 1.0f, 1.000001f, 1.5f})
+            for (const vec3& normal : {vec3(0, 0, -1), vec3(1, 0, 0), vec3(-1, 0, 0)}) {
+                const float factor = form_factor(DiskVector{}, 1, sideways, height, normal);
+                EXPECT_TRUE(factor >= 0 && factor <= 1.00001f) << factor << ' ' << height << ' ' << sideways;
+            }
+}
+
 TEST(VirtualLights, FromFarAwayAllFormFactorsAreThePoints) {
     for (const float sideways : {0.0f, 30.0f}) {
         const float point = form_factor(Point{}, 0.1f, sideways, 40);

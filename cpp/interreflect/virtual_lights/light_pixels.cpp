@@ -9,6 +9,15 @@
 namespace interreflect {
 namespace {
 
+/// The lights of a phase follow each other: any run of Halton's points is spread over all of the map, while of every 16th one
+/// (the paper's light modulo phases) base 2 leaves a strip of a sixteenth of its width.
+struct LightRun {
+    std::size_t begin, end;
+};
+LightRun lights_of_phase(std::size_t lights, std::size_t phase, std::size_t phases) {
+    return {lights * phase / phases, lights * (phase + 1) / phases};
+}
+
 /// What one phase's pixels of a tile get from its lights.
 class PhaseLight {
   public:
@@ -37,7 +46,8 @@ class PhaseLight {
     void gather(std::size_t phase, std::size_t phases) {
         receivers_.fill_up();
         for (int k = 0; k < glossy_; ++k) surfaces_[k] = glossy_surface(gbuffer_, scene_, receivers_.pixel[glossy_receivers_[k]]);
-        for (std::size_t i = phase; i < lights_.size(); i += phases)
+        const LightRun run = lights_of_phase(lights_.size(), phase, phases);
+        for (std::size_t i = run.begin; i < run.end; ++i)
             if (max_component(lights_.flux[i]) > 0.0f) one(i);
     }
     void write(Buffer<vec4>& irradiance, Buffer<vec4>& radiance) const {
@@ -99,8 +109,11 @@ class PhaseLight {
 std::vector<float> shares_of(const VirtualLights& lights, int phases) {
     std::vector<double> flux(static_cast<std::size_t>(phases), 0.0);
     double sum = 0;
-    for (std::size_t i = 0; i < lights.size(); ++i)
-        flux[i % flux.size()] += luminance(lights.flux[i]), sum += luminance(lights.flux[i]);
+    for (std::size_t phase = 0; phase < flux.size(); ++phase) {
+        const LightRun run = lights_of_phase(lights.size(), phase, flux.size());
+        for (std::size_t i = run.begin; i < run.end; ++i) flux[phase] += luminance(lights.flux[i]);
+        sum += flux[phase];
+    }
     std::vector<float> shares(flux.size());
     for (std::size_t i = 0; i < flux.size(); ++i)
         shares[i] = static_cast<float>(sum > 0 ? flux[i] / sum : 1.0 / static_cast<double>(phases));

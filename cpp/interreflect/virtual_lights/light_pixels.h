@@ -24,7 +24,7 @@ struct LightPixels {
     std::uint32_t seed = 0;
 };
 
-/// Light i is that of the pixels whose phase is i modulo the number of phases (share.h). A pixel's glossy lobe sees each light as
+/// Every phase of pixels (share.h) has lights that follow each other. A pixel's glossy lobe sees each light as
 /// a point in its middle.
 VirtualLight light_pixels(const LightPixels& how, const VirtualLights& lights, const LightShadows& shadows,
                           const GBuffer& gbuffer, const Scene& scene, const Intersector& intersector);

@@ -34,10 +34,12 @@ void disk_vector(const DiskLight& light, const Receivers& receivers, float* resu
         const Vec3 across = moved(to, facing, height);  // from the foot of the receiver to the middle
         const Vector l2 = dot(across, across), h2 = hn::Mul(height, height);
         const Vector z = hn::Add(hn::Add(l2, h2), radius2), q = hn::Sub(hn::Add(l2, h2), radius2);
-        const Vector rest = hn::NegMulAdd(hn::Mul(hn::Set(d, 4.0f), radius2), l2, hn::Mul(z, z));
-        const Vector s = hn::Sqrt(hn::Max(rest, tiny));
+        const Vector s = hn::Sqrt(hn::Max(hn::MulAdd(q, q, hn::Mul(hn::Set(d, 4.0f), hn::Mul(radius2, h2))), tiny));
         const Vector two_h = hn::Mul(hn::Set(d, 2.0f / pi), height);
-        const Vector along = hn::Div(hn::Mul(two_h, height), hn::Max(hn::Mul(s, hn::Add(s, q)), tiny));
+        const auto outside = hn::Gt(q, zero);
+        const Vector along =
+            hn::Div(hn::IfThenElse(outside, hn::Mul(two_h, height), hn::Mul(hn::Sub(s, q), hn::Set(d, 0.5f / pi))),
+                    hn::Max(hn::Mul(s, hn::IfThenElse(outside, hn::Add(s, q), radius2)), tiny));
         const Vector aside = hn::Div(two_h, hn::Max(hn::Mul(s, hn::Add(s, z)), tiny));
         const auto received = [&](const Vec3& n)
                                   HWY_ATTR { return hn::NegMulAdd(along, dot(n, facing), hn::Mul(aside, dot(n, across))); };
