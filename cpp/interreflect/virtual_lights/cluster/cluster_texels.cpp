@@ -78,7 +78,7 @@ ClusterCentre centre_at(const LightMaps& maps, const TexelMetric& metric, std::s
 namespace {
 
 /// Texels of several rows that are compared together.
-constexpr int block_columns = 64;
+constexpr int block_columns = 32;
 struct Block {
     int x0, x1, y0, y1;
 };
