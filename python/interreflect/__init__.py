@@ -28,6 +28,7 @@ _HOMES = {
     **dict.fromkeys(("VoxelCoverage", "voxel_coverage"), "coverage"),
     "voxel_view": "cubes",
     "cluster_view": "clusters",
+    "light_cluster_view": "clusters",
     **dict.fromkeys(("Study", "sweep"), "study.study"),
     "run": "study.run",
     "Records": "study.records",
@@ -80,6 +81,7 @@ if TYPE_CHECKING:
     from interreflect import stability as stability
     from interreflect._core import Grid as Grid
     from interreflect.clusters import cluster_view as cluster_view
+    from interreflect.clusters import light_cluster_view as light_cluster_view
     from interreflect.coverage import VoxelCoverage as VoxelCoverage
     from interreflect.coverage import voxel_coverage as voxel_coverage
     from interreflect.cubes import voxel_view as voxel_view
