@@ -1,7 +1,7 @@
 """`./run figures [name ...]`: runs what is missing of an experiment's records and draws its chart from them.
 
 A name is a question (a file of this folder with one `study` and one `chart(records)`, or a `measure(folder)` whose findings its chart
-draws), a paper (`freed`, `rehfeld`: a folder, all of its
+draws), a paper (`freed`, `rehfeld`, `weinzierl-heigl`: a folder, all of its
 files), one file of it (`freed/table_5_1`: `studies()` and `chart(*records)`), or `ledger`. Without a name: every question.
 Pictures go to results/figures. What needs a scene that is not here is left out and said so.
 """
@@ -18,7 +18,7 @@ import interreflect as ir
 from experiments.shared.keep import FOLDER, records_of
 
 HERE = Path(__file__).parent
-PAPERS = ("freed", "rehfeld")
+PAPERS = ("freed", "rehfeld", "weinzierl-heigl")
 LEDGER = "ledger"
 
 
@@ -26,9 +26,14 @@ def questions() -> list[str]:
     return sorted(path.stem for path in HERE.glob("*.py") if path.stem not in ("figures", "__init__"))
 
 
+def module_of(name: str) -> Any:
+    """`freed/figure_1_1` is experiments.freed.figure_1_1; folders have underscores where names have hyphens."""
+    return import_module(f"experiments.{name.replace('/', '.').replace('-', '_')}")
+
+
 def figures_of(paper: str) -> list[str]:
     """`freed/figure_1_1`, ...: the files of a paper's folder that draw something."""
-    return [f"{paper}/{path.stem}" for path in sorted((HERE / paper).glob("*.py")) if "\ndef chart(" in path.read_text()]
+    return [f"{paper}/{path.stem}" for path in sorted((HERE / paper.replace("-", "_")).glob("*.py")) if "\ndef chart(" in path.read_text()]
 
 
 def names() -> list[str]:
@@ -42,7 +47,7 @@ def findings(experiment: Any, folder: Path) -> Any:
 
 def draw(name: str, folder: Path) -> list[Path]:
     """The pictures of one question or one file of a paper, drawn from records."""
-    experiment = import_module(f"experiments.{name.replace('/', '.')}")
+    experiment = module_of(name)
     (folder / name).parent.mkdir(parents=True, exist_ok=True)
     if "/" not in name:
         chart = experiment.chart(findings(experiment, folder / name))

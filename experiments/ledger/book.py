@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import interreflect as ir
-from experiments.ledger import freed, rehfeld, rehfeld_caches, untested
+from experiments.ledger import freed, rehfeld, rehfeld_caches, untested, weinzierl_heigl
 from experiments.ledger.claim import NOT_YET, Claim, Verdict, judge
 from experiments.shared.keep import FOLDER, records_of
 
@@ -14,6 +14,7 @@ CLAIMS: tuple[Claim, ...] = (
     *freed.CLAIMS,
     *sorted((*rehfeld.CLAIMS, *rehfeld_caches.CLAIMS), key=lambda claim: int(claim.name[1:])),
     *untested.CLAIMS,
+    *weinzierl_heigl.CLAIMS,
 )
 NOTES = (
     "Times are those of this machine's processor, not of the papers' graphics cards: ratios and what depends on what are compared.",

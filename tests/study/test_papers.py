@@ -1,11 +1,10 @@
 """Every figure and table of a paper is a file with studies and a chart of their records; each runs at a small size on a stand-in scene."""
 
 import dataclasses
-from importlib import import_module
 
 import matplotlib.figure
 import pytest
-from experiments.figures import LEDGER, PAPERS, draw, figures_of, main, make, names, questions
+from experiments.figures import LEDGER, PAPERS, draw, figures_of, main, make, module_of, names, questions
 from experiments.ledger.book import CLAIMS
 from experiments.rehfeld import sites
 from experiments.shared import scenes
@@ -18,7 +17,8 @@ OF_FREED = [
     *("1_1", "4_1", "4_3", "4_4", "4_5", "4_6", "4_7", "4_8", "4_9", "4_10", "4_11"),
     *(f"5_{k}" for k in range(1, 10)),
 ]  # 4.2 is a diagram of samples in a pixel
-QUICK = ("freed/figure_4_3", "freed/figure_5_2", "rehfeld/surface_coverage", "rehfeld/alternating_layers")
+OF_WEINZIERL_HEIGL = (1, 3, 4, 5, 7, 8, 9)  # 2 and 6 are diagrams
+QUICK = ("freed/figure_4_3", "freed/figure_5_2", "rehfeld/surface_coverage", "rehfeld/alternating_layers", "weinzierl-heigl/figure_3")
 
 
 @pytest.fixture
@@ -36,9 +36,11 @@ def stand_in(monkeypatch):
 
 def smaller(study):
     """The same question with few pixels and samples, and grids that take no time."""
-    less = {"grid.resolution": lambda n: n // 4, "texels": lambda n: n // 16, "frames": lambda n: 2}
+    less = {"grid.resolution": lambda n: n // 4, "texels": lambda n: n // 16, "frames": lambda n: min(n, 2)}
     less |= {"distribute.caches": lambda n: n // 64, "fill.samples": lambda n: min(n, 4), "maps": lambda n: 1, "spp": lambda n: 4}
     less |= {"fill.resolution": lambda n: n // 4}
+    less |= {"sample_lights.lights": lambda n: max(n // 16, 1), "map_size": lambda n: n // 8, "cluster_lights.splat_size": lambda n: n // 8}
+    less |= {"shadow_lights.points": lambda n: n // 16, "shadow_lights.size": lambda n: n // 8}
     less |= {"light_voxels.size": lambda n: max(n // 16, 4), "shadow.size": lambda n: n // 16}
     methods = []
     for method in study.methods:
@@ -57,9 +59,13 @@ def test_every_figure_and_table_of_the_thesis_has_its_file():
     assert {f"freed/figure_{n}" for n in OF_FREED} | {"freed/table_5_1", "freed/table_5_2"} <= set(FIGURES)
 
 
+def test_every_figure_and_table_of_the_area_lights_paper_but_its_diagrams_has_its_file():
+    assert {f"weinzierl-heigl/figure_{n}" for n in OF_WEINZIERL_HEIGL} | {"weinzierl-heigl/table_1"} <= set(FIGURES)
+
+
 @pytest.mark.parametrize("name", FIGURES)
 def test_a_figure_says_what_it_shows_and_its_studies_are_well_formed(name, stand_in):
-    module = import_module(f"experiments.{name.replace('/', '.')}")
+    module = module_of(name)
     caption = module.__doc__.splitlines()[0]
     assert caption.partition(":")[0].removeprefix("Figure ").removeprefix("Table ").replace(".", "").isalnum() and len(caption) > 30
     number = name.rpartition("/")[2]
@@ -74,7 +80,7 @@ def test_studies_of_one_name_are_the_same_study(stand_in):
     """Records are kept by the study's name."""
     found = {}
     for name in FIGURES:
-        for study in import_module(f"experiments.{name.replace('/', '.')}").studies():
+        for study in module_of(name).studies():
             same = found.setdefault(study.name, study)
             assert (same.methods, same.size, same.repeats, same.bounces) == (study.methods, study.size, study.repeats, study.bounces)
 
@@ -88,7 +94,7 @@ def test_every_claim_that_is_tested_names_studies(stand_in):
 @pytest.mark.parametrize("name", [name if name in QUICK else pytest.param(name, marks=pytest.mark.long) for name in FIGURES])
 def test_a_figure_is_drawn_from_records_and_drawn_again_without_measuring(name, stand_in, tmp_path, monkeypatch):
     monkeypatch.setenv("INTERREFLECT_CACHE", str(tmp_path / "cache"))
-    module = import_module(f"experiments.{name.replace('/', '.')}")
+    module = module_of(name)
     small = [smaller(study) for study in module.studies()]
     monkeypatch.setattr(module, "studies", lambda: small)
     for path in draw(name, tmp_path):

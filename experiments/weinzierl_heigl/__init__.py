@@ -1,0 +1,1 @@
+"""Weinzierl-Heigl 2013: virtual area lights. Figures and tables from records."""
