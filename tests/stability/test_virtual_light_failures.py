@@ -79,6 +79,15 @@ def test_maps_let_more_light_into_an_umbra_towards_the_hard_end(name, easy):
     assert worse > max(1.2 * better, row.tolerance)
 
 
+@pytest.mark.parametrize("size", [0.5, 1.0, 1.5])
+def test_disks_at_random_places_leave_a_plate_as_open_as_their_overlaps_say(size):
+    """Poisson: disks of s times their share of the surface leave exp(-s^2) of it open, where nothing fills holes."""
+    row = ROWS["light in an umbra by size of points"]
+    bare = MAPS.replace({"shadow_lights.iterations": 0, "filter_shadows": ir.SimpleLookup()})
+    # Some 200 of a map's points are on the plate, of 64 maps; disks at its border cover less, texels quantize.
+    assert row.read(bare, size).error == pytest.approx(np.exp(-(size**2)), abs=0.04)
+
+
 def test_light_in_an_umbra_is_a_share_of_that_without_the_plate():
     row = ROWS["light in an umbra by points"]
     assert row.read(RAYS.replace(shadow_lights=ir.Unshadowed()), 1e3).error == pytest.approx(1)
@@ -101,6 +110,15 @@ def test_clusters_of_a_light_that_hardly_turns_stay_where_they_are():
     assert row.read(MAPS, 1e-6).error < 1e-3
     assert row.read(MAPS, 4.0).error > row.tolerance
     assert row.read(POINTS, 4.0).error == 0
+
+
+def test_blockers_at_two_heights_defeat_percentage_closer_filtering_and_not_rays_to_the_disk():
+    """The mean distance of two layers is that of neither; at one height the same filter passes."""
+    row = ROWS["penumbra of two layers"]
+    disks = RAYS.replace({"sample_lights.lights": 4, "share": ir.EveryPixel()})
+    closer = disks.replace(filter_shadows=ir.Pcss(blocker_samples=32, filter_samples=32))
+    assert row.read(closer, row.easy).error < row.tolerance < row.read(closer, row.hard).error
+    assert row.read(disks.replace({"filter_shadows.samples": 16}), row.hard).error < row.tolerance
 
 
 def leaking(stage, *arguments, **keys):
