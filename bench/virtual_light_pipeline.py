@@ -79,6 +79,10 @@ class Pipeline:
             timed(self.shaded),
         ]
 
+    def one_iteration(self) -> Work:
+        once = self.way.cluster_lights.replace(iterations=1)
+        return timed(lambda: stages.cluster_lights(once, self.seeds, self.maps))
+
     @property
     def texels(self) -> int:
         """Of the reflective shadow map."""

@@ -33,8 +33,9 @@ class Stage:
 
 def rows(calibration: Calibration, room: Room) -> list[Row]:
     few, many = Pipeline(room, LIGHTS), Pipeline(room, MORE)
-    spent = least(*few.works(), *many.works(), repeats=REPEATS)
-    of_few, of_many = (dict(zip(STAGES, some, strict=True)) for some in (spent[: len(STAGES)], spent[len(STAGES) :]))
+    names = (*STAGES, "iteration")
+    spent = least(*few.works(), few.one_iteration(), *many.works(), many.one_iteration(), repeats=REPEATS)
+    of_few, of_many = (dict(zip(names, some, strict=True)) for some in (spent[: len(names)], spent[len(names) :]))
     shading = shade(calibration, few, of_few)
     maps = light_map(calibration, few, of_few)
     clusters = {pipeline: cluster(calibration, pipeline, spent) for pipeline, spent in ((few, of_few), (many, of_many))}
@@ -42,7 +43,7 @@ def rows(calibration: Calibration, room: Room) -> list[Row]:
     parts = [maps, clusters[few], shadows[few], shading]
     listed = ", ".join(f"{name} {ms:.2f}" for name, ms in of_few.items())
     whole = Stage(
-        f"whole indirect light, {LIGHTS} with PCSS: {room.name}", sum(of_few.values()), TOTAL,
+        f"whole indirect light, {LIGHTS} with PCSS: {room.name}", sum(of_few[name] for name in STAGES), TOTAL,
         lambda c: sum(part.limit(c) for part in parts),
         sum(part.bound * part.scale for part in parts) / sum(part.bound for part in parts), f"stages in ms: {listed}",
     )  # fmt: skip
@@ -67,7 +68,7 @@ def cluster(calibration: Calibration, made: Pipeline, spent: dict[str, float]) -
     )
     note += f"; seeds before them {spent['sample_lights']:.2f} ms"
     name = f"k-means, {lights} clusters, one iteration: {made.room.name}"
-    return stage(calibration, name, spent["cluster_lights"], CLUSTERS[lights], lambda c: limits.cluster(c, made.texels, comparisons), note)
+    return stage(calibration, name, spent["iteration"], CLUSTERS[lights], lambda c: limits.cluster(c, made.texels, comparisons), note)
 
 
 def shadow(calibration: Calibration, made: Pipeline, spent: dict[str, float]) -> Stage:
