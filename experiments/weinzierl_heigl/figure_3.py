@@ -22,7 +22,7 @@ def shown(**changes: object) -> LightPicture:
 
 def studies() -> Sequence[ir.Study]:
     seeds = [shown(show="lights", cluster_lights=None, sample_lights__importance=by) for by in SEEDS.values()]
-    clusters = [shown(), shown(frames=FRAMES)]
+    clusters = [shown(cluster_lights__iterations=1, frames=frames) for frames in (1, FRAMES)]  # the paper's: one a frame
     return [study("seeds and clusters", [shown(show="flux", cluster_lights=None), *seeds, *clusters], size=MAP)]
 
 
