@@ -62,6 +62,8 @@ struct DiskLight {
     DiskLight(const VirtualLights& lights, std::size_t i)
         : index(i), position(lights.position[i]), normal(lights.normal[i]), area(lights.area[i]), offset(lights.offset[i]) {}
     float radius() const { return std::sqrt(area / pi); }
+    /// Receivers less high above the disk's plane may lie in it, as on the other side of a wall, but for rounding.
+    float least_height() const { return 1e-4f * radius() + offset; }
 };
 
 }  // namespace interreflect

@@ -103,7 +103,7 @@ HWY_INLINE std::uint64_t filter_with(const Filter& filter, const Lookup& lookup,
         const LaneMask reached = hn::Gt(hn::Load(d, irradiance + i), hn::Zero(d));
         if (hn::AllFalse(d, reached)) continue;
         const Receiving pixels(light, receivers, i, reached);
-        hn::Store(filter.lit(light, lookup, pixels, count), d, visible + i);
+        hn::Store(hn::IfThenElseZero(pixels.lit, filter.lit(light, lookup, pixels, count)), d, visible + i);
     }
     return count;
 }

@@ -60,7 +60,7 @@ struct Towards {
 struct Receiving {
     Vec3 local, plane;        // position; geometric normal
     Vector distance, height;  // height: of the plane over the light, negative where it faces the light
-    LaneMask lit;             // that the light reaches at all
+    LaneMask lit;  // that the light reaches at all: its middle is not below the pixel's horizon, as one is behind a thin wall
 
     HWY_INLINE Receiving(const ShadowedLight& light, const Receivers& receivers, int first, LaneMask reached) : lit(reached) {
         const Tag d;
@@ -77,6 +77,7 @@ struct Receiving {
         plane = turned(load(receivers.geometric_normal));
         distance = hn::Sqrt(dot(local, local));
         height = dot(plane, local);
+        lit = hn::And(lit, hn::Lt(height, hn::Zero(d)));
     }
     /// Where height / slope, how far along a direction the pixel's plane lies, is about the pixel's own distance. Both are
     /// negative where the plane faces the light. Elsewhere the pixel's surface is taken to lie at its distance.

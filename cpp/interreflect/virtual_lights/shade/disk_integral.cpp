@@ -58,7 +58,7 @@ void irradiance(const DiskIntegral&, const DiskLight& light, const Receivers& re
             return glm::dot(to, n) + radius * std::sqrt(std::fmax(1.0 - slope * slope, 0.0));
         };
         const double rounding = 1e-4 * radius;
-        if (!(height > rounding) || !(highest(normal) > rounding)) continue;
+        if (!(height > light.least_height()) || !(highest(normal) > rounding)) continue;
         if (!(highest(dvec3(receivers.geometric_normal_at(i))) > rounding)) continue;
         if (distance2 > far_radii * far_radii * radius * radius) {
             const double cosine = glm::dot(to, normal);

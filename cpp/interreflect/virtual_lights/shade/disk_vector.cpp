@@ -44,7 +44,7 @@ void disk_vector(const DiskLight& light, const Receivers& receivers, float* resu
         const auto received = [&](const Vec3& n)
                                   HWY_ATTR { return hn::NegMulAdd(along, dot(n, facing), hn::Mul(aside, dot(n, across))); };
         const Vector value = received(load(receivers.normal, i));
-        const auto seen = hn::And(hn::And(hn::Gt(height, zero), hn::Gt(value, zero)),
+        const auto seen = hn::And(hn::And(hn::Gt(height, hn::Set(d, light.least_height())), hn::Gt(value, zero)),
                                   hn::Gt(received(load(receivers.geometric_normal, i)), zero));
         hn::Store(hn::IfThenElseZero(seen, value), d, result + i);
     }
