@@ -24,7 +24,7 @@ PAPER: dict[str, Any] = {
         centre="mean",
         area="texels",
     ),
-    "shadow_lights": _core.ImperfectShadowMaps(size=128, iterations=2, splat="square"),
+    "shadow_lights": _core.ImperfectShadowMaps(size=128, iterations=2, splat="square", point_size=1.0),
     "shade_lights": _core.PointToDisk(),
     "share": _core.Interleaved(width=4, height=4),
 }

@@ -13,7 +13,7 @@ struct ImperfectShadowMaps {
     int size = 128;
     int points = 100'000;
     int iterations = 2;
-    double point_size = 1.0;
+    double point_size = 1.25;
     std::string splat = "disk";
     double bias = 1.0;
 
