@@ -82,7 +82,8 @@ class Clustering {
         made.position[c] = technique_.centre == "mean" ? centre.position : map.position[texel];
         made.normal[c] = centre.normal;
         made.flux[c] = technique_.flux == "centre" ? map.flux[texel] * members : vec3(sums_.sums[c].flux);
-        made.area[c] = static_cast<float>(technique_.area == "texels" || members < 2 ? sums_.sums[c].area : sums_.spread_area(c));
+        const double own = sums_.sums[c].area, spread = members < 2 ? own : sums_.spread_area(c);
+        made.area[c] = static_cast<float>(technique_.area == "texels" ? own : std::min(own, spread));
         made.offset[c] = map.offset[texel];
         made.texel[c] = static_cast<std::uint32_t>(first_[static_cast<std::size_t>(centre.map)] + texel);
         made.members[c] = sums_.members(c);

@@ -46,9 +46,8 @@ struct KMeans {
                        "the mean itself",
                        Unit::none, one_of("member|mean")},
                  Param{"area", &KMeans::area,
-                       "a light's: that of the disk over which flux is spread as over the members, or as in the paper the sum of "
-                       "the members' "
-                       "(several maps that see one surface count it several times)",
+                       "a light's: that of the disk over which flux is spread as over the members, but no more than theirs; "
+                       "or the sum of theirs, as in the paper (several maps that see one surface count it several times)",
                        Unit::none, one_of("spread|texels")});
 };
 
