@@ -103,3 +103,15 @@ def test_lights_of_ones_own_are_checked(name, value, message):
     assert len(_core.VirtualLights(**right)) == 1
     with pytest.raises(ValueError, match=message):
         _core.VirtualLights(**{**right, name: value})
+
+
+@pytest.mark.parametrize("bounces", [1, 2, 4])
+def test_further_bounces_add_up_as_in_a_furnace(bounces):
+    """Of closed form 4 with all bounces, n of them hold 1 - rho^n, rho = .5. Measured: .995, .986 and .982 of that."""
+    case = ir.scenes.closed_form(4, bounces=None)
+    method = ir.methods.VirtualAreaLights(
+        bounces=bounces, map_size=256, shadow_lights=ir.TracedVisibility(), filter_shadows=ir.SimpleLookup()
+    )
+    indirect = np.asarray(method.render(case.scene, camera=case.camera, size=(32, 32)).indirect)[..., 0] * case.scale / case.value
+    assert indirect.mean() == pytest.approx(1 - 0.5**bounces, rel=0.025)
+    assert indirect.std() < 0.02
