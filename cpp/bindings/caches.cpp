@@ -20,15 +20,6 @@ namespace {
 
 using SharedPyramids = std::vector<std::shared_ptr<const Pyramid>>;
 
-template <class T>
-py::array_t<float> vectors(const Buffer<T>& data, const py::object& owner) {
-    return view(reinterpret_cast<const float*>(data.data()),
-                {static_cast<py::ssize_t>(data.size()), static_cast<py::ssize_t>(sizeof(T) / sizeof(float))}, owner);
-}
-template <class T>
-py::array_t<T> numbers(const Buffer<T>& data, const py::object& owner) {
-    return view(data.data(), {static_cast<py::ssize_t>(data.size())}, owner);
-}
 /// Half floats, four a texel.
 py::array halves(const Buffer<std::uint16_t>& data, std::vector<py::ssize_t> shape, const py::object& owner) {
     auto bits = view(data.data(), std::move(shape), owner);

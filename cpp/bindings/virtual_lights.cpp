@@ -16,15 +16,6 @@
 namespace interreflect::bindings {
 namespace {
 
-template <class T>
-py::array_t<float> vectors(const Buffer<T>& data, const py::object& owner) {
-    return view(reinterpret_cast<const float*>(data.data()), {static_cast<py::ssize_t>(data.size()), 3}, owner);
-}
-template <class T>
-py::array_t<T> numbers(const Buffer<T>& data, const py::object& owner) {
-    return view(data.data(), {static_cast<py::ssize_t>(data.size())}, owner);
-}
-
 /// Lights that a user placed.
 std::shared_ptr<VirtualLights> placed_lights(const py::object& position, const py::object& normal, const py::object& flux,
                                              const py::object& area, const py::object& offset) {
@@ -72,6 +63,9 @@ void bind_lights(py::module_& m) {
     cls.def_property_readonly(
         "area", [](const py::object& self) { return numbers(self.cast<const Lights&>().area, self); },
         "(n,): scene units squared.");
+    cls.def_property_readonly(
+        "offset", [](const py::object& self) { return numbers(self.cast<const Lights&>().offset, self); },
+        "(n,): how far off the surface rays start, scene units.");
     cls.def_property_readonly(
         "texel", [](const py::object& self) { return numbers(self.cast<const Lights&>().texel, self); },
         "(n,): where each stands, a number over the texels of all maps.");

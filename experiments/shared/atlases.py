@@ -31,15 +31,22 @@ def measured(folder: Path, wanted: Wanted, seeds: Sequence[int], sweep: int, bis
     return found
 
 
+LEGEND = (
+    "Where each failure crosses its tolerance, from easy to hard. never: it holds all the way; always: it fails at the easy end already;\n"
+    "from x: it fails at the easy end and holds from x on; *: it crosses more than once. Green: much of the way is held."
+)
+
+
 def chart(atlases: Atlases) -> Figure:
     """A table for each atlas: break points in the failure's unit, shaded by how far along the sweep they lie."""
     heights = [len(atlas.failures) for atlas in atlases.values()]
     widest = max(len(atlas.methods) for atlas in atlases.values())
-    figure = new_figure((3.4 + 1.0 * widest, 1.2 * len(heights) + 0.36 * sum(heights)), dark=False)
+    figure = new_figure((3.4 + 1.0 * widest, 0.4 + 1.1 * len(heights) + 0.36 * sum(heights)), dark=False)
     for axes, (name, atlas) in zip(
         figure.subplots(len(atlases), 1, squeeze=False, height_ratios=heights).ravel(), atlases.items(), strict=True
     ):
         _draw(axes, name, atlas)
+    figure.supxlabel(LEGEND, fontsize=7)
     return figure
 
 
@@ -51,7 +58,7 @@ def _draw(axes: Any, name: str, atlas: ir.stability.Atlas) -> None:
             axes.text(x, y, words(atlas.cell(method, failure)), ha="center", va="center", fontsize=7)
     axes.set_xticks(range(len(atlas.methods)), atlas.methods, fontsize=7, rotation=20, ha="right", rotation_mode="anchor")
     axes.set_yticks(range(len(atlas.failures)), [_label(row) for row in atlas.failures.values()], fontsize=7)
-    axes.set(xlabel=name, ylabel="failure and unit of its knob")
+    axes.set_title(name, loc="left", fontsize=9)
     axes.tick_params(length=0)
 
 
@@ -66,13 +73,19 @@ def words(cell: Cell) -> str:
     """A break point in few characters; "from": the other way round, it holds beyond; *: it crosses more than once."""
     if cell.crossing is None or math.isnan(cell.crossing.value):
         return {NEVER: "never", ALWAYS: "always"}.get(cell.outcome, cell.outcome)
-    number = f"{cell.crossing.value:.3g}" + ("*" if "crosses" in cell.crossing.words else "")
+    number = plain(cell.crossing.value) + ("*" if "crosses" in cell.crossing.words else "")
     return f"from {number}" if cell.outcome == REVERSED else number
 
 
 def _label(row: Failure) -> str:
     unit = f", {row.unit}" if row.unit else ""
-    return f"{row.name}{unit}\n{row.easy:.3g} to {row.hard:.3g}, tolerance {row.tolerance:g}"
+    return f"{row.name}{unit}\n{plain(row.easy, 6)} to {plain(row.hard, 6)}, tolerance {row.tolerance:g}"
+
+
+def plain(value: float, digits: int = 3) -> str:
+    """So many digits, with commas between thousands and without an exponent."""
+    rounded = float(f"{value:.{digits}g}")
+    return f"{rounded:,.0f}" if abs(rounded) >= 1000 else f"{rounded:g}"
 
 
 def table(atlas: ir.stability.Atlas) -> pd.DataFrame:

@@ -17,6 +17,17 @@ def sponza() -> ir.Scene:
     return load("sponza_crytek/scene.toml")
 
 
+def sponza_by_a_spot() -> ir.Scene:
+    """Sponza without sun and sky: a spot from under the roof across the nave, on the floor and the arcade that its camera sees."""
+    spot = ir.SpotLight(position=(-700, 800, 100), direction=(0.75, -0.6, -0.3), intensity=(4e6, 3.6e6, 3e6), inner=32, outer=40)
+    return sponza().replace(lights=[spot], name="Sponza by a spot")
+
+
+def veach_ajar() -> ir.Scene:
+    """A room that is lit through a door by light on the wall behind it."""
+    return load("veach_ajar/scene.toml")
+
+
 def sunny_sponza() -> ir.Scene:
     """Sponza without its sky: for what is about the voxels that a lamp hits."""
     scene = sponza()

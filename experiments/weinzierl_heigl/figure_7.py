@@ -76,5 +76,5 @@ def chart(timed: ir.Records, many: ir.Records, places: ir.Records) -> Figure:
             "indirect light without shadows (paper: 13 ms both)": [*of_indirect, ("16,384 disks", as_light(truth, truth))],
             "with direct light": [*of_all, ("16,384 disks", as_light(whole, whole))],
         },
-        columns=2,
+        columns=3,
     )

@@ -13,7 +13,10 @@ import interreflect as ir
 from experiments.shared.keep import NONE, QUALITY, SIZE
 
 FULL = (1280, 720)  # the paper's pictures
+SMALL = (320, 180)  # where a truth with little noise is wanted, or many rays
 MAP = (512, 512)  # a light's map, a pixel a texel
+
+CLEAN = ir.Reference(noise=2e-3, max_spp=2048)  # at SMALL: 40 s of paths
 
 Image = NDArray[np.floating[Any]]
 
@@ -45,7 +48,7 @@ def study(
 
 def compared(name: str, methods: Sequence[Any], **how: Any) -> ir.Study:
     """Beside the truth of one bounce."""
-    return study(name, methods, reference=QUALITY, **how)
+    return study(name, methods, **{"reference": QUALITY, **how})
 
 
 def indirect(records: ir.Records, index: int) -> Image:

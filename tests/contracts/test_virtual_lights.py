@@ -257,6 +257,54 @@ def test_bad_combinations_are_value_errors(changes, message):
         ir.methods.VirtualAreaLights(**changes).render(ir.scenes.cornell_box(light="spot"), size=(16, 16))
 
 
+def lit_by(scene, lights):
+    """Seeds and their maps."""
+    maps = ir.light_maps(scene, size=32)
+    return stages.sample_lights(ir.HaltonLights(lights=lights), maps), maps
+
+
+def test_products_that_do_not_belong_together_are_value_errors():
+    scene, technique = room(LIGHTS["point"]), ir.ImperfectShadowMaps(points=100)
+    seeds, _ = lit_by(scene, 4)
+    with pytest.raises(ValueError, match="the seeds are not texels of these maps"):
+        stages.cluster_lights(ir.KMeans(), seeds, ir.light_maps(scene, size=16))
+    with pytest.raises(ValueError, match="the points are of a scene with 1 instances, this one has 2"):
+        other = ir.Scene(meshes=[*scene.meshes, box((-0.2,) * 3, (0.2,) * 3, body="cube")], lights=scene.lights, bodies={"cube": np.eye(4)})
+        stages.shadow_lights(technique, seeds, other, points=stages.scatter_points(technique, scene))
+    shadows = stages.shadow_lights(technique, lit_by(scene, 3)[0], scene)
+    with pytest.raises(ValueError, match="the shadows are those of another number of lights"):
+        stages.shade_lights(ir.Point(), seeds, shadows, stages.trace_gbuffer(scene, "view", (8, 8)), scene)
+
+
+def test_maps_without_texels_or_views_are_value_errors():
+    scene = room(LIGHTS["point"])
+    with pytest.raises(ValueError, match="emitter_views must be at least 1, got 0"):
+        ir.light_maps(scene, size=8, emitter_views=0)
+    with pytest.raises(ValueError, match="size must be at least 1 texel, got 0"):
+        stages.bounce_maps(scene, lit_by(scene, 4)[0], size=0)
+
+
+def test_an_environments_lights_stand_where_its_sky_is():
+    """A scene turned so that z is up has the light of the one where y is."""
+    turn = np.array([[1, 0, 0], [0, 0, -1], [0, 1, 0]], float)  # y to z
+    image = np.zeros((8, 16, 3), np.float32)
+    image[1, 5] = 50
+    sky = ir.EnvironmentLight(image=image)
+    slab = np.array([[-2, 0, -2], [2, 0, -2], [2, 0, 2], [-2, 0, 2]], float)
+    wall = np.array([[-2, 0, -2], [-2, 2, -2], [-2, 2, 2], [-2, 0, 2]], float)
+
+    def light(turned):
+        scene = ir.Scene(
+            meshes=[quad((corners @ turned.T).tolist()) for corners in (slab, wall)], lights=[sky], up=tuple(turned @ (0, 1, 0)),
+            cameras={"view": ir.Camera(position=turned @ (3, 3, 3), target=turned @ (-1, 0, 0), up=turned @ (0, 1, 0), fov_x=50)},
+        )  # fmt: skip
+        return np.asarray(ir.methods.VirtualAreaLights(share=ir.EveryPixel()).render(scene, size=(32, 24)).indirect, np.float64)
+
+    there, here = light(turn), light(np.eye(3))
+    assert here.mean() > 0
+    assert there.mean() == pytest.approx(here.mean(), rel=0.02)
+
+
 def test_cones_sky_is_refused():
     with pytest.raises(ValueError, match="ConeSky needs cones"):
         ir.methods.VirtualAreaLights(sky=ir.ConeSky())

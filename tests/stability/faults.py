@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+from functools import partial
 from importlib import import_module
 from types import SimpleNamespace
 
@@ -36,6 +37,15 @@ def after(stage, change):
 
 def instead(stage, make):
     return stage, lambda *arguments, **keys: make(getattr(stages, stage), *arguments, **keys)
+
+
+def is_noticed(monkeypatch, module, stage, faulty, error):
+    """That a method of interreflect.methods passes while its stage is sound, and not once `faulty(stage, *arguments)` stands for it;
+    `error()` in tolerances."""
+    sound = error()
+    assert sound <= 1, f"the sound stage fails already: {sound:.2f} of the tolerance"
+    monkeypatch.setattr(f"interreflect.methods.{module}.{stage}", partial(faulty, getattr(stages, stage)))
+    assert error() > 1
 
 
 IMAGES = (

@@ -40,10 +40,14 @@ for stage in ("first_tint", "second_tint"):
 
 @dataclasses.dataclass(frozen=True)
 class Tinted:
-    """Half the picture's rows are lit through one stage, the other half through another, so that their errors add up."""
+    """Half the picture's rows are lit through one stage, the other half through another, so that their errors add up.
+
+    crowded: the first one's exact counterpart fails beside a second one that is not exact.
+    """
 
     first_tint: Tint = Tint(error=0.3)
     second_tint: Tint | None = Tint(error=0.1)
+    crowded: bool = False
     bounces: int | None = 1
     name = "tinted"
     own_stages = ()
@@ -55,7 +59,7 @@ class Tinted:
         tints = {"first_tint": self.first_tint, "second_tint": self.second_tint}
         return {f"{stage}.{k}": v for stage, tint in tints.items() if tint for k, v in {"": repr(tint)}.items()} | {
             stage: None for stage, tint in tints.items() if tint is None
-        }
+        } | {"crowded": self.crowded}
 
     def exact_knobs(self):
         return {name: tint for name, tint in (("first_tint", self.first_tint), ("second_tint", self.second_tint)) if tint}
@@ -69,6 +73,8 @@ class Tinted:
 
 class TintedPrepared(FakePrepared):
     def render(self, camera=None, size=None, seed=0, threads=None):
+        if self.method.crowded and isinstance(self.method.first_tint, ExactTint) and not isinstance(self.method.second_tint, ExactTint):
+            raise ValueError("too crowded")
         direct, indirect = truth_of(self.scene, size)
         image, half = (direct + indirect).astype(np.float64), size[1] // 2
         rows = (slice(None, half), slice(half, None))

@@ -9,6 +9,7 @@ import interreflect as ir
 from interreflect import _core
 from interreflect.study.attribution import (
     EXACT,
+    FAILED,
     FIXED,
     LEFT_OUT,
     MORE_SAMPLES,
@@ -75,6 +76,19 @@ def test_a_stage_that_is_left_out_costs_what_it_would_have_given(fake_truth, tmp
     share = {stage.stage: stage for stage in found.stages}["second_tint"]
     assert share.status == LEFT_OUT
     assert share.error == pytest.approx(1 / 1.09, abs=0.01)  # all of its half's light against .3^2 of the other's
+
+
+def test_a_counterpart_that_fails_among_the_others_is_a_row_that_says_so(fake_truth, tmp_path):
+    found = tinted(tmp_path / "a", crowded=True)
+    for stage in found.stages:  # of two stages, the first one alone is all but the second one as well
+        if stage.stage in ("first_tint", "second_tint"):
+            assert stage.status == FAILED and "too crowded" in stage.note and np.isnan(stage.error)
+    assert found.rest == pytest.approx(0, abs=0.01)
+    assert found.interaction == pytest.approx(1, abs=0.01)
+    assert found.ranking == ()
+    assert found.error == pytest.approx(tinted(tmp_path / "b").error)
+    assert "too crowded" in str(found.table["note"].tolist())
+    assert len(found.chart().axes) == 2 and len(found.images().axes) == 3 + 1
 
 
 def test_an_attribution_resumes_without_rendering(fake_truth, tmp_path, monkeypatch):

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pandas as pd
 import pytest
+from experiments import head_to_head
 from experiments import where_do_caches_break as caches
 from experiments import where_do_virtual_lights_break as virtual
 from experiments import where_do_voxels_break as where
@@ -55,7 +56,7 @@ def test_an_experiment_is_a_question_whose_records_make_its_chart(path, tmp_path
 
 
 def test_what_is_no_study_measures_by_itself():
-    alone = ["where_do_caches_break", "where_do_virtual_lights_break", "where_do_voxels_break"]
+    alone = ["head_to_head", "where_do_caches_break", "where_do_virtual_lights_break", "where_do_voxels_break"]
     assert [path.stem for path in FILES if path not in EXPERIMENTS] == alone
 
 
@@ -135,3 +136,44 @@ def test_break_points_of_virtual_lights_cover_every_shade_and_filter():
     for stage, ways in (("shade_lights", virtual.shaded), ("filter_shadows", virtual.filtered)):
         assert {m.knobs()[stage] for m in ways.values()} == {technique.__name__ for technique in ir.techniques(stage)}
     assert {name for _, rows in virtual.ATLASES.values() for name in rows} <= {row.name for row in ir.stability.failures}
+
+
+@pytest.fixture(scope="module")
+def contest(tmp_path_factory):
+    """Three ways and black on the Cornell box, few pixels."""
+    folder = tmp_path_factory.mktemp("contest")
+    kept = ("direct light alone", "16 lights, rays", "64 lights, rays", "denoised paths, 1 a pixel")
+    few = {name: head_to_head.rivals()[name] for name in kept}
+    few["cones"] = ir.methods.VoxelConeTracing(grid=ir.Grid(resolution=16))
+    name = "Cornell box by a spot"
+    place = dataclasses.replace(head_to_head.PLACES[name], spp=16)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("INTERREFLECT_CACHE", str(folder / "cache"))
+        for what, value in {"rivals": lambda: few, "SIZE": (48, 28), "SEEDS": (0, 1), "PLACES": {name: place}}.items():
+            patch.setattr(head_to_head, what, value)
+        yield folder, few, head_to_head.measure(folder, [name])
+
+
+def test_who_wins_a_head_to_head_is_told_by_both_errors_with_black_among_them(contest):
+    folder, few, found = contest
+    (records,) = found.values()
+    table = head_to_head.winners(records)
+    assert set(table["setting"]) <= set(few) and set(table["by"]) == {"relmse", "flip"}
+    black = table[table["method"] == "constant-ambient"]
+    assert len(black) and set(black["setting"]) == {"direct light alone"} and not black["beats_black"].any()
+    for (_, by), ranked in table.groupby(["budget", "by"]):
+        assert ranked[by].is_monotonic_increasing and list(ranked["place"]) == list(range(1, len(ranked) + 1))
+        assert (ranked["milliseconds"] <= ranked["budget"]).all()
+    kept = folder / "cornell_box_by_a_spot"
+    assert all((kept / name).exists() for name in ("winners.csv", "speed_accuracy.png", "pictures.png"))
+    assert all(axes.has_data() for axes in head_to_head.chart(found).axes)
+    assert "direct light alone relMSE" in head_to_head.told("box", records)
+
+
+def test_a_head_to_head_leaves_out_a_scene_that_is_not_here(monkeypatch, capsys, tmp_path):
+    def absent():
+        raise FileNotFoundError("tried here and there")
+
+    monkeypatch.setattr(head_to_head, "PLACES", {"far": head_to_head.Place(absent, "court", 2)})
+    assert head_to_head.measure(tmp_path, ["far"]) == {}
+    assert "far: left out" in capsys.readouterr().out

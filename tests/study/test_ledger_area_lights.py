@@ -19,7 +19,7 @@ def steps(*complete):
 
 
 def errors(few, many):
-    return pd.DataFrame({"flip": [few, many], "relmse": [few, many], "frame": [1.0, 1.0]}, index=list(table_1.NAMES))
+    return pd.DataFrame({"flip": [few, many], "relmse": [few, many]}, index=list(table_1.NAMES))
 
 
 def points(off, spots):
@@ -32,7 +32,8 @@ def points(off, spots):
 
 def looked_up(simple, pcss):
     names = list(figure_8.WAYS)
-    return pd.DataFrame.from_dict(dict(zip(names, (simple, pcss, (0.0, 0.0)), strict=True)), orient="index", columns=["off", "jagged"])
+    rows = {name: 2 * row for name, row in zip(names, (simple, pcss, (0.0, 0.0)), strict=True)}
+    return pd.DataFrame.from_dict(rows, orient="index", columns=["off", "jagged", "dull_off", "dull_jagged"])
 
 
 def times(simple, pcss):
@@ -67,9 +68,10 @@ def word(name, *records):
     ((40.0, 50.0), (0.2, 0.1), DOES_NOT_HOLD),
 ])  # fmt: skip
 def test_few_lights_must_be_fast_and_right(complete, off, expected, monkeypatch):
-    monkeypatch.setattr(table_1, "table", lambda records: steps(*complete))
-    monkeypatch.setattr(table_1, "errors", lambda records: errors(*off))
-    assert word("w1", None) == expected
+    monkeypatch.setattr(table_1, "table", lambda timed: steps(*complete))
+    monkeypatch.setattr(table_1, "errors", lambda near: errors(*off))
+    assert word("w1", None, None) == expected
+    assert word("w1", None, None, None) == expected  # one view more, of the same times and errors
 
 
 @pytest.mark.parametrize(("warped", "distances", "expected"), [

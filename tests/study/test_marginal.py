@@ -30,15 +30,14 @@ def test_a_step_is_worth_the_error_it_loses_over_the_time_it_adds(fake_truth, tm
 
 def test_advice_names_what_to_use_what_to_drop_and_what_it_rests_on(tmp_path, monkeypatch):
     monkeypatch.setenv("INTERREFLECT_CACHE", str(tmp_path / "cache"))
-    from interreflect.study import advise as module
     from interreflect.study.ladder import mechanisms
 
-    rungs = mechanisms()[:2]  # the others take the same way, and longer
-    monkeypatch.setattr(module, "ladder", lambda *given, **options: ir.ladder(*given, **options, rungs=rungs))
-    advice = ir.advise(ir.scenes.cornell_box(), size=(36, 27), reference=Reference(5e-3, 256), folder=tmp_path / "a")
+    given = {"size": (36, 27), "reference": Reference(5e-3, 256), "folder": tmp_path / "a"}
+    given["rungs"] = mechanisms()[:2]  # the others take the same way, and longer
+    advice = ir.advise(ir.scenes.cornell_box(), **given)
     assert "constant-ambient" in advice.text.splitlines()[0]
     assert "Stages of constant-ambient whose exact counterpart changes nothing here: sky" in advice.text  # a box has none
     assert "of the attribution" in advice.text and str(tmp_path) in advice.text
     assert repr(advice) == advice.text
-    slow = ir.advise(ir.scenes.cornell_box(), size=(36, 27), milliseconds=1e-6, reference=Reference(5e-3, 256), folder=tmp_path / "a")
+    slow = ir.advise(ir.scenes.cornell_box(), milliseconds=1e-6, **given)
     assert "which nothing meets" in slow.text

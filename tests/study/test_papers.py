@@ -3,12 +3,14 @@
 import dataclasses
 
 import matplotlib.figure
+import numpy as np
 import pytest
 from experiments.figures import LEDGER, PAPERS, draw, figures_of, main, make, module_of, names, questions
 from experiments.ledger.book import CLAIMS
 from experiments.rehfeld import sites
 from experiments.shared import scenes
 from experiments.shared.keep import records_of
+from experiments.shared.phase_light_picture import PhaseLightPicture, parts
 
 import interreflect as ir
 
@@ -104,6 +106,26 @@ def test_a_figure_is_drawn_from_records_and_drawn_again_without_measuring(name, 
     chart = module.chart(*(records_of(study, tmp_path) for study in module.studies()))
     assert isinstance(chart, matplotlib.figure.Figure)
     assert [record.key for study in module.studies() for record in records_of(study, tmp_path)] == keys
+
+
+def test_light_of_all_phases_is_what_the_merge_makes_a_picture_of():
+    """Weighted by their shares of flux, what the four phases' pixels of a wall got is the light of all lights."""
+    scene = ir.scenes.cornell_box(light="spot")
+    lights = {"sample_lights": ir.HaltonLights(lights=64), "shadow_lights": ir.Unshadowed(), "map_size": 64}
+    phases = PhaseLightPicture(share=ir.Interleaved(width=2, height=2), tiles=False).replace(lights)
+    merged = ir.methods.VirtualAreaLights(share=ir.Interleaved(width=2, height=2)).replace(lights)
+    unmerged, whole = (method.prepare(scene).render(size=(64, 64)).indirect for method in (phases, merged))
+    inside = np.s_[8:24, 24:40]  # the back wall, far from edges
+    assert np.abs(unmerged[inside] - whole[inside]).max() > 0.05 * whole[inside].mean()  # pixels differ before the merge
+    shares = _shares_of_flux(phases, scene)
+    blocks = [unmerged[inside][j::2, i::2] * share for share, (j, i) in zip(shares, ((0, 0), (0, 1), (1, 0), (1, 1)), strict=True)]
+    assert np.isclose(sum(block.mean() for block in blocks), whole[inside].mean(), rtol=0.02)  # the wall's light is not linear
+
+
+def _shares_of_flux(method, scene):
+    maps = ir.light_maps(scene, method.map_size)
+    lights = ir.cluster_lights(method.cluster_lights, ir.sample_lights(method.sample_lights, maps), maps)
+    return [share for _, share in parts(lights, 4)]
 
 
 def test_a_name_is_a_question_a_paper_a_figure_or_the_ledger(capsys):

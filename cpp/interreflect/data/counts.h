@@ -28,6 +28,7 @@ struct Counts {
     std::uint64_t filled_texels = 0;      // of those, filled from coarser levels
     std::uint64_t light_evaluations = 0;  // of a virtual light for a pixel that it reaches
     std::uint64_t shadow_lookups = 0;     // of shadow maps
+    std::uint64_t links = 0;              // from patches of surfels to caches: made, or summed up
 
     Counts& operator+=(const Counts& other);
 };
@@ -60,6 +61,7 @@ inline constexpr NamedCount every_count[] = {
     {"filled_texels", &Counts::filled_texels},
     {"light_evaluations", &Counts::light_evaluations},
     {"shadow_lookups", &Counts::shadow_lookups},
+    {"links", &Counts::links},
 };
 static_assert(sizeof(every_count) / sizeof(NamedCount) == sizeof(Counts) / sizeof(std::uint64_t));
 

@@ -50,6 +50,7 @@ struct SurfacePoints {
     Buffer<vec3> position, normal;   // unit
     Buffer<std::uint32_t> instance;  // of the geometry
     float area = 0;                  // of the whole surface as it was when they were made, scene units squared
+    std::size_t instances = 0;       // of that geometry
 
     std::size_t size() const { return position.size(); }
     std::size_t bytes() const { return size() * (2 * sizeof(vec3) + sizeof(std::uint32_t)); }

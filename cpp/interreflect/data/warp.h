@@ -9,8 +9,6 @@
 
 namespace interreflect {
 
-using glm::ivec3;
-
 struct Warp {
     enum class Kind : std::uint8_t { linear, logistic, cubic, perspective, spherical };
     Kind kind = Kind::linear;

@@ -23,7 +23,7 @@ struct PixelSurface {
         const PixelLobe lobe = lobe_at(g, scene.materials[point.material], pixel);
         point.exponent = lobe.exponent;
         point.lobe = lobe.lobe;
-        to_viewer = glm::normalize(g.camera.position - point.position);
+        to_viewer = g.seen_head_on ? point.normal : glm::normalize(g.camera.position - point.position);
     }
     bool reflects() const { return max_component(point.albedo) > 0.0f || glossy(); }
     bool glossy() const { return max_component(point.specular) > 0.0f; }

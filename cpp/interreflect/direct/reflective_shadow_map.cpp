@@ -22,15 +22,17 @@ struct PictureView {
     const LightSampler* lights = nullptr;
     int light = 0;
     int size = view.size;
+    float texel = 4.0f * view.half_x * view.half_y / (static_cast<float>(size) * static_cast<float>(size));
 
     Ray ray(float x, float y) const { return view.ray(x, y); }
-    float solid_angle(float x, float y) const { return view.texel_measure(x, y); }
+    /// Along a texel's ray, by the cube of its cosine: of the plane at distance 1.
+    float solid_angle(const vec3& direction) const {
+        const float cosine = parallel() ? 1.0f : glm::dot(direction, view.forward);
+        return texel * cosine * cosine * cosine;
+    }
     bool parallel() const { return !view.perspective; }
-    vec3 incident(float measure, const vec3& position) const {
-        if (parallel()) return irradiance * measure;
-        // A spot's irradiance times the squared distance is its intensity; the texel spans a solid angle of it.
-        const LightSampler::Delta delta = lights->delta(light, position);
-        return delta.irradiance * (delta.distance * delta.distance * measure);
+    vec3 incident(float measure, const vec3& direction) const {
+        return (parallel() ? irradiance : lights->intensity(light, direction)) * measure;
     }
 };
 
@@ -44,12 +46,9 @@ struct SphereView {
     Ray ray(float x, float y) const {
         return {origin, 0.0f, uniform_sphere({x / static_cast<float>(size), y / static_cast<float>(size)})};
     }
-    float solid_angle(float, float) const { return 4.0f * pi / (static_cast<float>(size) * static_cast<float>(size)); }
+    float solid_angle(const vec3&) const { return 4.0f * pi / (static_cast<float>(size) * static_cast<float>(size)); }
     bool parallel() const { return false; }
-    vec3 incident(float measure, const vec3& position) const {
-        const LightSampler::Delta delta = lights->delta(light, position);
-        return delta.irradiance * (delta.distance * delta.distance * measure);
-    }
+    vec3 incident(float measure, const vec3& direction) const { return lights->intensity(light, direction) * measure; }
 };
 
 /// The hemisphere above a surface: texels of equal solid angle times cosine [Nusselt's disk, Shirley and Chiu's map].
@@ -61,7 +60,9 @@ struct HemisphereView {
     vec3 local(float x, float y) const { return cosine_hemisphere({x / static_cast<float>(size), y / static_cast<float>(size)}); }
     float texels() const { return static_cast<float>(size) * static_cast<float>(size); }
     Ray ray(float x, float y) const { return {disk.position + disk.normal * disk.offset, 0.0f, frame.to_world(local(x, y))}; }
-    float solid_angle(float x, float y) const { return pi / (texels() * std::fmax(local(x, y).z, least_cosine)); }
+    float solid_angle(const vec3& direction) const {
+        return pi / (texels() * glm::max(glm::dot(direction, disk.normal), least_cosine));
+    }
     bool parallel() const { return false; }
     vec3 incident(float, const vec3&) const { return disk.flux / texels(); }
 };
@@ -129,16 +130,16 @@ class MapTracer {
         if (!rays.met(lane)) return clear_texel(map_, texel);
         const vec3 direction(rays.direction_x[lane], rays.direction_y[lane], rays.direction_z[lane]);
         if (((packet.plain >> lane) & 1U) == 0) surfaces.set(lane, surface_at(scene_, rays.hit(lane), direction));
-        const float solid_angle = view_.solid_angle(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
+        const float solid_angle = view_.solid_angle(direction);
         const KernelMaterial& material = kernel_.materials[surfaces.material[lane]];
         map_.position[texel] = lane_of(surfaces.position, lane);
         map_.normal[texel] = lane_of(surfaces.normal, lane);
-        map_.incident[texel] = view_.incident(solid_angle, map_.position[texel]);
+        map_.incident[texel] = view_.incident(solid_angle, direction);
         map_.flux[texel] = map_.incident[texel] * lane_of(surfaces.albedo, lane);
         const bool glossy = surfaces.lobe[lane] != SurfacePacket::no_lobe;
         map_.specular[texel] = glossy ? vec3(material.specular[0], material.specular[1], material.specular[2]) : vec3(0);
         map_.alpha[texel] = material.alpha;
-        const float cosine = std::fmax(std::fabs(glm::dot(direction, lane_of(surfaces.geometric_normal, lane))), least_cosine);
+        const float cosine = glm::max(std::fabs(glm::dot(direction, lane_of(surfaces.geometric_normal, lane))), least_cosine);
         const float reach = view_.parallel() ? 1.0f : rays.far[lane] * rays.far[lane];
         map_.area[texel] = solid_angle * reach / cosine;
         map_.offset[texel] = surfaces.offset[lane];
@@ -245,6 +246,8 @@ std::size_t LightMaps::bytes() const {
 
 LightMaps light_maps(const Scene& scene, const Intersector& intersector, const LightSampler& lights, const LightMapKnobs& knobs) {
     check_size(knobs.size);
+    if (knobs.emitter_views < 1)
+        throw std::invalid_argument("emitter_views must be at least 1, got " + std::to_string(knobs.emitter_views));
     LightMaps result;
     for (int light = 0; light < lights.delta_count(); ++light)
         result.maps.push_back(map_of_delta(scene, intersector, lights, light, knobs.size));

@@ -30,6 +30,22 @@ float ggx_distribution(float alpha, const Angles& a) {
     const float a2 = alpha * alpha, d = a2 * a.cos_half * a.cos_half + a.sin2_half;
     return a2 / (pi * d * d);
 }
+/// Of half vectors per solid angle of the light.
+float half_vectors(const Angles& a) { return 1.0f / (4.0f * glm::max(a.cos_o_half, 1e-6f)); }
+/// Its mean over light that fills a circle. Slopes have the density alpha^2 / (pi (alpha^2 + t^2)^2): what a circle of radius r
+/// about slope t holds is the form factor of a disk for an element at distance alpha, t aside of its axis [Howell 2010, B-12].
+/// With S^2 = (alpha^2 + t^2 - r^2)^2 + 4 alpha^2 r^2; all lengths times the cosine.
+float mean_ggx_distribution(float alpha, const Angles& a, float solid_angle) {
+    const float a2 = squared(alpha), cosine = glm::max(a.cos_half, 1e-6f), r2 = solid_angle * half_vectors(a) / (pi * cosine);
+    const float q = a2 * cosine * cosine + a.sin2_half - r2, s = std::sqrt(q * q + 4.0f * a2 * r2 * cosine * cosine);
+    return q > 0.0f ? 2.0f * a2 / (pi * s * (s + q)) : (s - q) / (2.0f * pi * s * r2 * cosine * cosine);
+}
+/// Of the lobe whose middle has the mean of (n + 1) / (2 pi) cos^n over a circle about its middle.
+float widened_exponent(float n, float solid_angle) {
+    const float below = glm::min(solid_angle / (2.0f * pi), 1.0f);  // 1 - cosine of the rim
+    return below > 0.0f ? -std::expm1((n + 1.0f) * std::log1p(-glm::min(below, 0.999999f))) / below - 1.0f : n;
+}
+
 /// sqrt(alpha^2 sin^2 + cos^2), the root in Smith's shadowing.
 float smith_root(float alpha, float cosine) { return std::sqrt(squared(alpha) + (1.0f - squared(alpha)) * squared(cosine)); }
 
@@ -44,14 +60,14 @@ float blinn_phong_scale(float n) { return (n + 2.0f) * (n + 4.0f) / (8.0f * pi *
 /// and for D; k takes the roughness, D its square (ERRATA).
 float schlick_shadowing_over_cosine(float k, float cosine) { return 1.0f / (cosine * (1.0f - k) + k); }
 /// D F G / (4 cos cos): with D normalised the paper's pi in the place of 4 would be 1.273 times too bright (ERRATA).
-vec3 freed_cook_torrance(const SurfacePoint& p, const Angles& a) {
+vec3 freed_cook_torrance(const SurfacePoint& p, const Angles& a, float distribution) {
     const float k = squared(std::sqrt(p.alpha) + 1.0f) / 8.0f;
     const float shadowing = schlick_shadowing_over_cosine(k, a.cos_o) * schlick_shadowing_over_cosine(k, a.cos_i);
-    return schlick(p.specular, a.cos_o_half) * (ggx_distribution(p.alpha, a) * shadowing * 0.25f);
+    return schlick(p.specular, a.cos_o_half) * (distribution * shadowing * 0.25f);
 }
 
-vec3 lobe_value(const SurfacePoint& p, const vec3& wo, const vec3& wi, const Angles& a) {
-    const float n = p.exponent;
+/// `n`: its exponent; `distribution`: of microfacets.
+vec3 lobe_value(const SurfacePoint& p, const vec3& wo, const vec3& wi, const Angles& a, float n, float distribution) {
     switch (p.lobe) {
         case Lobe::phong:
             return p.specular * ((n + 2.0f) / (2.0f * pi) * std::pow(phong_cosine(p, wo, wi), n));
@@ -60,13 +76,23 @@ vec3 lobe_value(const SurfacePoint& p, const vec3& wo, const vec3& wi, const Ang
         case Lobe::gaining_blinn_phong:
             return p.specular * ((n + 8.0f) / (8.0f * pi) * std::pow(a.cos_half, n));
         case Lobe::freed_cook_torrance:
-            return freed_cook_torrance(p, a);
+            return freed_cook_torrance(p, a, distribution);
         case Lobe::ggx:
             break;
     }
     // Height-correlated Smith over 4 cos cos [Heitz 2014, eq. 99].
     const float masking = 0.5f / (a.cos_i * smith_root(p.alpha, a.cos_o) + a.cos_o * smith_root(p.alpha, a.cos_i));
-    return schlick(p.specular, a.cos_o_half) * (ggx_distribution(p.alpha, a) * masking);
+    return schlick(p.specular, a.cos_o_half) * (distribution * masking);
+}
+
+vec3 lobe_value(const SurfacePoint& p, const vec3& wo, const vec3& wi, const Angles& a) {
+    return lobe_value(p, wo, wi, a, p.exponent, has_microfacets(p.lobe) ? ggx_distribution(p.alpha, a) : 0.0f);
+}
+vec3 mean_lobe_value(const SurfacePoint& p, const vec3& wo, const vec3& wi, const Angles& a, float solid_angle) {
+    if (has_microfacets(p.lobe)) return lobe_value(p, wo, wi, a, p.exponent, mean_ggx_distribution(p.alpha, a, solid_angle));
+    // Phong's is about the mirrored direction, the others' about the normal.
+    const float covered = p.lobe == Lobe::phong ? solid_angle : solid_angle * half_vectors(a);
+    return lobe_value(p, wo, wi, a, widened_exponent(p.exponent, covered), 0.0f);
 }
 
 float lobe_pdf(const SurfacePoint& p, const vec3& wo, const vec3& wi, const Angles& a) {
@@ -151,6 +177,15 @@ BrdfValue evaluate_brdf_and_pdf(const SurfacePoint& p, const vec3& wo, const vec
 
 vec3 evaluate_brdf(const SurfacePoint& point, const vec3& wo, const vec3& wi) {
     return evaluate_brdf_and_pdf(point, wo, wi).value;
+}
+
+vec3 mean_brdf(const SurfacePoint& p, const vec3& wo, const vec3& wi, float solid_angle) {
+    const bool above = glm::dot(p.normal, wo) > 0.0f && glm::dot(p.normal, wi) > 0.0f &&
+                       glm::dot(p.geometric_normal, wo) > 0.0f && glm::dot(p.geometric_normal, wi) > 0.0f;
+    if (!above) return vec3(0);
+    vec3 value = p.albedo / pi;
+    if (max_component(p.specular) > 0.0f) value += mean_lobe_value(p, wo, wi, angles(p.normal, wo, wi), solid_angle);
+    return value;
 }
 
 float brdf_pdf(const SurfacePoint& point, const vec3& wo, const vec3& wi) { return evaluate_brdf_and_pdf(point, wo, wi).pdf; }

@@ -10,6 +10,11 @@ namespace interreflect {
 /// f(wo, wi), 1/sr, without the cosine; 0 unless both directions are above the geometric and the shading horizon.
 vec3 evaluate_brdf(const SurfacePoint& point, const vec3& wo, const vec3& wi);
 
+/// The same over light that fills a circle of `solid_angle` about wi evenly: the mean of f. GGX's slopes over a circle in closed
+/// form, exact but for the circle's shape among half vectors and for shadowing, which is that of its middle; of lobes with an
+/// exponent, one as high as the mean is in their middle.
+vec3 mean_brdf(const SurfacePoint& point, const vec3& wo, const vec3& wi, float solid_angle);
+
 /// Solid angle density of sample_brdf, 1/sr, over the whole sphere: it integrates to 1, or is 0 where nothing is reflected.
 float brdf_pdf(const SurfacePoint& point, const vec3& wo, const vec3& wi);
 

@@ -34,6 +34,8 @@ class LightSampler {
     /// Point, spot and directional lights, in that order.
     int delta_count() const { return points_ + spots_ + directions_; }
     Delta delta(int i, const vec3& position) const;
+    /// Of a point or spot light along `direction` (unit, away from the light), W/sr.
+    vec3 intensity(int i, const vec3& direction) const;
     /// Light that is the same at every position.
     bool delta_is_directional(int i) const { return i >= points_ + spots_; }
 
@@ -62,7 +64,13 @@ class LightSampler {
     float environment_pdf(const vec3& direction) const { return environment_.pdf(direction); }
 
   private:
+    /// Cosines of a spot's half angles.
+    struct Cone {
+        float inner, outer;
+    };
+
     const Scene* scene_;
+    std::vector<Cone> cones_;
     int points_, spots_, directions_;
     EmitterSampler emitters_;
     EnvironmentSampler environment_;

@@ -4,7 +4,8 @@
 ///                                std::uint32_t seed);
 ///
 /// `seeds`: what sample_lights chose; as many lights come back. `last`: what the same technique returned for the frame before
-/// (null: there is none). Exact counterpart: EveryRsmPixel, which clusters nothing and does not look at the seeds.
+/// (null: there is none). std::invalid_argument where the seeds are of other maps. Exact counterpart: EveryRsmPixel, which
+/// clusters nothing and does not look at the seeds.
 #pragma once
 #include <variant>
 

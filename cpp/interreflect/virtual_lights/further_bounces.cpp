@@ -1,10 +1,13 @@
 #include "virtual_lights/further_bounces.h"
 
 #include <algorithm>
+#include <stdexcept>
+#include <string>
 
 namespace interreflect {
 
 LightMaps bounce_maps(const Scene& scene, const Intersector& intersector, const VirtualLights& lights, int size) {
+    if (size < 1) throw std::invalid_argument("size must be at least 1 texel, got " + std::to_string(size));
     LightMaps result;
     const double views = static_cast<double>(std::max<std::size_t>(lights.size(), 1));
     const int each = std::max(1, static_cast<int>(std::lround(static_cast<double>(size) / std::sqrt(views))));

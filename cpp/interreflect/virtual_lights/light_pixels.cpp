@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <stdexcept>
 
 #include "shading/brdf.h"
 #include "shading/pixel_lobe.h"
@@ -29,7 +30,8 @@ class PhaseLight {
           gbuffer_(gbuffer),
           scene_(scene),
           intersector_(intersector),
-          extent_(extent) {}
+          extent_(extent),
+          disk_(is_disk(how.shade)) {}
 
     void begin() {
         receivers_.clear();
@@ -86,7 +88,10 @@ class PhaseLight {
         if (!(unit_[i] > 0.0f)) return;
         const vec3 position = receivers_.position_at(i);
         const vec3 to_viewer = glm::normalize(gbuffer_.camera.position - position);
-        radiance_[i] += evaluate_brdf(surfaces_[k], to_viewer, glm::normalize(disk.position - position)) * (flux * unit_[i]);
+        const vec3 to_light = glm::normalize(disk.position - position);
+        const float solid_angle =
+            disk_ ? unit_[i] / visible_[i] * disk.area * pi / glm::dot(to_light, receivers_.normal_at(i)) : 0.0f;
+        radiance_[i] += mean_brdf(surfaces_[k], to_viewer, to_light, glm::min(solid_angle, 2.0f * pi)) * (flux * unit_[i]);
     }
 
     const LightPixels& how_;
@@ -96,6 +101,7 @@ class PhaseLight {
     const Scene& scene_;
     const Intersector& intersector_;
     float extent_;
+    bool disk_;
     Receivers receivers_;
     PerReceiver unit_, visible_, irradiance_[3];
     vec3 radiance_[Receivers::capacity];
@@ -131,6 +137,9 @@ bool any_glossy(const Scene& scene) {
 
 VirtualLight light_pixels(const LightPixels& how, const VirtualLights& lights, const LightShadows& shadows,
                           const GBuffer& gbuffer, const Scene& scene, const Intersector& intersector) {
+    const std::size_t texels = lights.size() * static_cast<std::size_t>(shadows.size) * static_cast<std::size_t>(shadows.size);
+    if (shadows.kind == LightShadows::Kind::maps && shadows.depth.size() != texels)
+        throw std::invalid_argument("shade_lights: the shadows are those of another number of lights");
     const std::size_t pixels = gbuffer.pixels();
     const bool glossy = any_glossy(scene);
     VirtualLight result;

@@ -24,8 +24,9 @@ struct LightPixels {
     std::uint32_t seed = 0;
 };
 
-/// Every phase of pixels (share.h) has lights that follow each other. A pixel's glossy lobe sees each light as
-/// a point in its middle.
+/// std::invalid_argument where the shadows are of another number of lights. Every phase of pixels (share.h) has lights that
+/// follow each other. A pixel's glossy lobe is averaged over a circle of the disk's solid angle about its middle; of the lights
+/// that Point and ClampedPoint take for points it sees the middle.
 VirtualLight light_pixels(const LightPixels& how, const VirtualLights& lights, const LightShadows& shadows,
                           const GBuffer& gbuffer, const Scene& scene, const Intersector& intersector);
 

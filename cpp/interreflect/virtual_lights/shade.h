@@ -15,4 +15,9 @@
 
 namespace interreflect {
 using ShadeLights = std::variant<DiskIntegral, DiskVector, PointToDisk, ClampedPoint, Point>;
+
+/// Whether a glossy lobe sees a light as a disk, or as a point.
+inline bool is_disk(const ShadeLights& technique) {
+    return !std::holds_alternative<Point>(technique) && !std::holds_alternative<ClampedPoint>(technique);
 }
+}  // namespace interreflect

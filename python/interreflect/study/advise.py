@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 from interreflect.study.attribution import EXACT, FIXED, MEASURED, NO_COUNTERPART, NO_EFFECT, Attribution, attribute
 from interreflect.study.interface import Scene
-from interreflect.study.ladder import Ladder, Rung, ladder
+from interreflect.study.ladder import Ladder, Mechanism, Rung, ladder
 from interreflect.study.marginal import Marginals, marginal
 from interreflect.study.measured import words
 from interreflect.study.reference import Reference
@@ -42,14 +43,15 @@ def advise(
     milliseconds: float | None = None,
     reference: Reference | None = None,
     folder: str | Path | None = None,
+    rungs: Sequence[Mechanism] | None = None,
 ) -> Advice:
     """What to use for a view within `milliseconds` a frame (None: whatever it takes), what may be dropped, and why.
 
     Climbs the ladder, then attributes the error of the recommended method to its stages and tries its knobs' next steps. Everything
-    measured is a record (folder: of all of them; None: the user's cache).
+    measured is a record (folder: of all of them; None: the user's cache). rungs: the mechanisms of the ladder (None: its own).
     """
     places: dict[str, Any] = {name: None if folder is None else Path(folder) / name for name in ("ladder", "attribution", "marginal")}
-    climbed = ladder(scene, camera, size, reference=reference, folder=places["ladder"])
+    climbed = ladder(scene, camera, size, rungs=rungs, reference=reference, folder=places["ladder"])
     chosen = _chosen(climbed, milliseconds)
     method: Any = chosen.method
     stages = attribute(method, scene, climbed.camera, size, reference=reference, folder=places["attribution"])

@@ -30,6 +30,7 @@ EXACT = "already exact"
 LEFT_OUT = "left out"
 NO_COUNTERPART = "no exact counterpart"
 FIXED = "no technique to choose"
+FAILED = "counterpart failed"
 MEASURED = (REPLACED, MORE_SAMPLES, LEFT_OUT)  # statuses of stages whose share of the error is measured
 WITHIN_NOISE, NO_EFFECT = "within noise", "changes nothing here"
 AS_IS, ALL_EXACT = "as is", "all exact"
@@ -145,18 +146,20 @@ def attribute(
     """Each stage's share of a method's error and time on one view, by exact counterparts one at a time and all but one.
 
     Counterparts of techniques are their stages' own; a method tells those of its other stages (`own_stages`): more paths, no denoising.
-    Counterparts that are random estimates take `samples` samples; the noise that this leaves is known from the seeds, subtracted and
-    stated (`exact_noise`).
+    Counterparts that are random estimates take `samples` samples: rays, texels that are lights, points on all lights together; the
+    noise that this leaves is known from the seeds, subtracted and stated (`exact_noise`).
     A stage that is exact already but has fewer samples is measured too: its share is its noise. Seeds are averaged, the truth's noise
     is subtracted, and shares within it, or whose interval holds 0, say "within noise". metric: "relmse" or "indirect_relmse".
-    Everything measured is a record in `folder` (None: the user's cache), so that it resumes. ValueError where a cell fails.
+    A stage whose counterpart fails among the other techniques is a row that says why and has no share: what it costs is left in the
+    interaction. Everything measured is a record in `folder` (None: the user's cache), so that it resumes. ValueError where the method
+    itself fails, or all counterparts together.
     """
     if metric not in ("relmse", "indirect_relmse"):
         raise ValueError(f"attribute: metric must be 'relmse' or 'indirect_relmse', got {metric!r}")
     if len(tuple(seeds)) < 2:
         raise ValueError(f"attribute: at least two seeds tell noise from error, got {tuple(seeds)}")
     name = camera_name(scene, camera)
-    plan = {stage: counterpart_of(stage, technique, samples) for stage, technique in _fields(method).items()}
+    plan = {stage: counterpart_of(stage, technique, _share(method, stage, samples)) for stage, technique in _fields(method).items()}
     plan |= {stage: own_counterpart(method, stage, samples) for stage in method.own_stages}
     variants = _variants(method, {stage: new for stage, (status, new) in plan.items() if status in MEASURED}, samples)
     folder = study_folder("attribution", scene, name, size, method) if folder is None else Path(folder)
@@ -169,7 +172,7 @@ def attribute(
     if exact:
         others = measured(Study(name=f"{title}, exact", methods=list(exact.values()), repeats=0, **base), folder)
         groups |= zip(exact, others, strict=True)
-    return _judge(method, scene, name, metric, plan, {key: _whole(groups[same(variant)]) for key, variant in variants.items()}, folder)
+    return _judge(method, scene, name, metric, plan, {key: groups[same(variant)] for key, variant in variants.items()}, folder)
 
 
 def counterpart_of(stage: str, technique: Any, samples: int) -> tuple[str, Any]:
@@ -183,6 +186,12 @@ def counterpart_of(stage: str, technique: Any, samples: int) -> tuple[str, Any]:
         return REPLACED, _with_samples(exact(), samples)
     more = _with_samples(technique, samples)
     return (MORE_SAMPLES, more) if getattr(more, "samples", 0) > getattr(technique, "samples", 0) else (EXACT, None)
+
+
+def _share(method: Method, stage: str, samples: int) -> int:
+    """Samples of a stage's own: what looks at every virtual light spreads them over the lights."""
+    lights = method.knobs().get("sample_lights.lights", 1) if stage == "filter_shadows" else 1
+    return max(1, samples // int(lights))
 
 
 def own_counterpart(method: Method, stage: str, samples: int) -> tuple[str, Method | None]:
@@ -222,18 +231,28 @@ def _variants(method: Method, changes: Mapping[str, Any], samples: int) -> dict[
     return variants
 
 
-def _whole(group: tuple[Record, ...]) -> tuple[Record, ...]:
-    """The records of one variant. ValueError for one that failed."""
-    for record in group:
-        if record.status != OK:
-            raise ValueError(f"attribute: {record.configuration}: {record.status}: {record.failure}")
-    return group
+def _failure(group: tuple[Record, ...]) -> str:
+    """Of a variant; empty where none of its records failed."""
+    failed = (f"{record.configuration}: {record.status}: {record.failure}" for record in group if record.status != OK)
+    return next(failed, "")
+
+
+def _refused(plan: Mapping[str, Any], groups: Mapping[str, tuple[Record, ...]]) -> dict[str, str]:
+    """Stages whose counterpart fails, and why. ValueError where there is nothing to compare with."""
+    for variant in (AS_IS, ALL_EXACT):
+        if failure := _failure(groups[variant]):
+            raise ValueError(f"attribute: {failure}")
+    tried = (stage for stage, (status, _) in plan.items() if status in MEASURED)
+    failures = {stage: _failure(groups[stage]) or _failure(groups[f"not {stage}"]) for stage in tried}
+    return {stage: failure for stage, failure in failures.items() if failure}
 
 
 def _judge(
     method: Method, scene: Scene, camera: str, metric: str, plan: Mapping[str, Any], groups: Mapping[str, tuple[Record, ...]], folder: Path
 ) -> Attribution:
     records = Records(f"attribution of {method.name}", tuple(record for group in groups.values() for record in group), folder)
+    refused = _refused(plan, groups)
+    groups = {key: group for key, group in groups.items() if key.removeprefix("not ") not in refused}
     truth_noise = groups[AS_IS][0].noise if metric == "relmse" else groups[AS_IS][0].indirect_noise
     errors = {key: np.array([record.metrics[metric] for record in group]) - truth_noise for key, group in groups.items()}
     error = float(errors[AS_IS].mean())
@@ -247,7 +266,9 @@ def _judge(
         milliseconds = spent.get(stage, np.nan)
         share = StageShare(stage, _words(method, stage), _named(counterpart), status)
         share = dataclasses.replace(share, milliseconds=milliseconds, time=milliseconds / frame)
-        if status in MEASURED:
+        if stage in refused:
+            share = dataclasses.replace(share, status=FAILED, note=refused[stage])
+        elif status in MEASURED:
             # Noise between seeds is the counterparts' own, and no stage's error, but for what vanishes with this stage alone.
             own = max(0.0, noises[AS_IS] - noises[stage]) / (1 - _noise_kept(method, stage, counterpart))
             alone = (errors[AS_IS] - noises[AS_IS]) - (errors[stage] - noises[stage]) + own
@@ -255,7 +276,8 @@ def _judge(
             share = dataclasses.replace(share, **_shares(alone, added, share_of, truth_noise))
         stages.append(share)
     owned = sum(stage.error for stage in stages if stage.status in MEASURED)
-    rest = (float(errors[ALL_EXACT].mean()) - noises[ALL_EXACT]) * share_of if any(s.status in MEASURED for s in stages) else 1.0
+    replaceable = any(status in MEASURED for status, _ in plan.values())
+    rest = (float(errors[ALL_EXACT].mean()) - noises[ALL_EXACT]) * share_of if replaceable else 1.0
     return Attribution(
         method, scene, camera, metric, tuple(stages), error,
         noise=noises[AS_IS],

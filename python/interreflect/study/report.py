@@ -27,7 +27,8 @@ LARGEST = 10_000_000  # bytes of a page
 def report(records: Records, path: str | Path, *findings: Any) -> Path:
     """Write the study's page and return its path: one HTML file of at most 10 MB with everything inside, light or dark as the system is.
 
-    findings: results with `.chart(dark=...)` and `_repr_html_()`, each in a section of its own: an attribution, an atlas, a ladder, ...
+    findings: results with `_repr_html_()` and maybe `.chart(dark=...)` and `.images(dark=...)`, each in a section of its own: an
+    attribution, an atlas, a ladder, advice, ...
     What cannot be drawn, as every cell failed or no pictures were kept, is said on the page. ImportError without the extra `view`;
     ValueError where tables and findings alone exceed the size.
     """
@@ -103,8 +104,9 @@ def _configurations(records: Records) -> str:
 
 
 def _finding(finding: Any) -> str:
-    pictures = drawn(finding.images, "pictures") if hasattr(finding, "images") else ""
-    return section(type(finding).__name__, f'{drawn(finding.chart, "chart")}{pictures}<div class="wide">{finding._repr_html_()}</div>')
+    charts_of = [(name, what) for name, what in (("chart", "chart"), ("images", "pictures")) if hasattr(finding, name)]
+    figures = "".join(drawn(getattr(finding, name), what) for name, what in charts_of)
+    return section(type(finding).__name__, f'{figures}<div class="wide">{finding._repr_html_()}</div>')
 
 
 def _failures(records: Records) -> str:

@@ -44,7 +44,8 @@ void place_caches(const GBuffer& gbuffer, std::span<const std::uint32_t> pixels,
             places.position[i] = gbuffer.position[at];
             places.normal[i] = gbuffer.normal[at];
             places.geometric_normal[i] = gbuffer.geometric_normal[at];
-            places.screen[i] = vec2(static_cast<float>(at % gbuffer.width), static_cast<float>(at / gbuffer.width)) + 0.5f;
+            const std::uint32_t column = at % gbuffer.width, row = at / gbuffer.width;
+            places.screen[i] = vec2(static_cast<float>(column), static_cast<float>(row)) + 0.5f;
             places.footprint[i] =
                 tile_footprint(gbuffer.camera.position, gbuffer.position[at], gbuffer.geometric_normal[at], angle);
             places.offset[i] = gbuffer.offset[at];

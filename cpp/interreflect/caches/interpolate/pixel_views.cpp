@@ -68,8 +68,9 @@ void PixelViewer::look(std::span<const std::uint32_t> pixels, PixelViews& views)
     for (int i = 0; i < views.count; ++i) {
         const std::uint32_t pixel = pixels[static_cast<std::size_t>(i)];
         views.pixel[i] = pixel;
-        views.screen[0][i] = static_cast<float>(pixel % gbuffer_.width) + 0.5f;
-        views.screen[1][i] = static_cast<float>(pixel / gbuffer_.width) + 0.5f;
+        const std::uint32_t column = pixel % gbuffer_.width, row = pixel / gbuffer_.width;
+        views.screen[0][i] = static_cast<float>(column) + 0.5f;
+        views.screen[1][i] = static_cast<float>(row) + 0.5f;
     }
     look_up(views);
 }

@@ -41,13 +41,11 @@ struct PixelViews {
                 level[i]};
     }
 
-    int count = 0;
     alignas(64) std::uint32_t pixel[capacity];
     alignas(64) float position[3][capacity], normal[3][capacity], screen[2][capacity];
     alignas(64) float direction[3][capacity];  // unit; 0 without a lobe, as is the next
     alignas(64) float albedo[3][capacity];     // directional albedo at this view
     alignas(64) float level[capacity];         // of the maps, between the first and the last; no_lobe
-    int finest = 0, coarsest = -1;             // levels that lobes are read from
 
     /// Of one coordinate within each group of pixels; empty where there are none. What is not finite is left out.
     struct Bounds {
@@ -58,6 +56,8 @@ struct PixelViews {
         }
     };
     Bounds position_bounds[3], normal_bounds[3], screen_bounds[2];
+    int count = 0;
+    int finest = 0, coarsest = -1;  // levels that lobes are read from
 };
 
 /// The way from pixels to what they look up, in maps of one kind.

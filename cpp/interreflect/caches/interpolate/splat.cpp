@@ -40,8 +40,8 @@ struct Splats {
 
 /// Pixels, and the caches that are splatted onto them.
 struct Block {
-    Tile tile;
     PixelViews views;
+    Tile tile;
     std::vector<std::uint32_t> splats;
 };
 

@@ -1,7 +1,9 @@
 #include "caches/interpolate/sum_caches.h"
 
 #include <algorithm>
-#include <cstring>
+#include <array>
+#include <bit>
+#include <cstdint>
 #include <vector>
 
 #include "caches/interpolate/cache_reader.h"
@@ -133,7 +135,8 @@ class PixelLanes {
   private:
     HWY_INLINE void find_places(const Frame& frame, bool glossy) {
         // Bit by bit: the frame about a normal depends on the sign of its zeros.
-        if (std::memcmp(&places_about_, &frame.normal, sizeof(vec3)) == 0) return;
+        using Bits = std::array<std::uint32_t, 3>;
+        if (std::bit_cast<Bits>(places_about_) == std::bit_cast<Bits>(frame.normal)) return;
         places_about_ = frame.normal;
         const Vec3 x = everywhere(frame.tangent), y = everywhere(frame.bitangent), z = everywhere(frame.normal);
         diffuse_ = hemisphere_square_lanes({dot(normal_, x), dot(normal_, y), dot(normal_, z)});

@@ -1,5 +1,6 @@
 #include "direct/sky/traced_sky.h"
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -94,13 +95,15 @@ std::size_t sample_tile(const Sampler& sampler, bool diffuse, int samples, const
 DirectLight sky(const TracedSky& technique, const Scene& scene, const Intersector& intersector, const LightSampler& lights,
                 const GBuffer& g, std::uint32_t seed) {
     DirectLight result(g.width, g.height);
+    if (!lights.has_environment()) {
+        std::ranges::fill(result.radiance, vec3(0));
+        return result;
+    }
     Buffer<vec3> irradiance(g.pixels());
-    const Sampler sampler{lights, lights.has_environment() && !lights.environment_is_constant(),
-                          1.0f / static_cast<float>(technique.samples)};
+    const Sampler sampler{lights, !lights.environment_is_constant(), 1.0f / static_cast<float>(technique.samples)};
     std::vector<Counts> counts(tile_count(g));
     for_each_tile(g, [&](const TilePixels& pixels) {
         for (const std::size_t pixel : pixels.all()) result.radiance[pixel] = irradiance[pixel] = vec3(0);
-        if (!lights.has_environment()) return;
         Counts& count = counts[pixels.tile()];
         count.shadow_rays = sample_tile(sampler, true, technique.samples, pixels, irradiance, scene, intersector, g, seed) +
                             sample_tile(sampler, false, technique.samples, pixels, result.radiance, scene, intersector, g, seed);

@@ -80,48 +80,54 @@ namespace {
 /// Texels of several rows that are compared together.
 constexpr int block_columns = 32;
 struct Block {
-    int x0, x1, y0, y1;
+    int x0, x1;
 };
 
-/// The centres that may win texels of a block, of its rows, and of anywhere; always in their own order.
+/// The centres that may win texels of a band, of a block of it, and of anywhere; always in their own order.
 class Candidates {
   public:
     Candidates(const KMeans& technique, bool splats, std::span<const ClusterCentre> centres)
-        : before_(technique.splat_size / 2), after_((technique.splat_size - 1) / 2), splats_(splats), centres_(centres) {
+        : before_(technique.splat_size / 2), after_((technique.splat_size - 1) / 2), splats_(splats) {
         for (std::uint32_t c = 0; c < centres.size(); ++c)
-            if (centres[c].valid) all_.push_back(made(c, -everywhere, everywhere));
+            if (centres[c].valid) all_.push_back(made(c, centres[c]));
     }
     bool splats() const { return splats_; }
-    const std::vector<MetricCentre>& all() const { return all_; }
-    void of_block(const Block& block, std::vector<std::uint32_t>& found) const {
-        found.clear();
-        for (const MetricCentre& one : all_) {
-            const ClusterCentre& at = centres_[one.cluster];
-            if (at.y - before_ < block.y1 && at.y + after_ >= block.y0 && at.x - before_ < block.x1 && at.x + after_ >= block.x0)
-                found.push_back(one.cluster);
-        }
+    /// Every centre, with no splat's border.
+    std::vector<MetricCentre> anywhere() const {
+        std::vector<MetricCentre> found = all_;
+        for (MetricCentre& one : found)
+            one.first_x = -far, one.last_x = far, one.first_row = -everywhere, one.last_row = everywhere;
+        return found;
     }
-    /// Of a row of a block that has `of` for candidates; columns count from x0 on.
-    const std::vector<MetricCentre>& of_row(std::span<const std::uint32_t> of, int x0, int y,
-                                            std::vector<MetricCentre>& memory) const {
-        if (!splats_) return all_;
-        memory.clear();
-        for (const std::uint32_t c : of)
-            if (const ClusterCentre& at = centres_[c]; at.y - before_ <= y && y <= at.y + after_)
-                memory.push_back(made(c, at.x - before_ - x0, at.x + after_ - x0));
-        return memory;
+    void of_band(const Band& band, std::vector<MetricCentre>& found) const {
+        found.clear();
+        for (const MetricCentre& one : all_)
+            if (one.first_row < band.y1 && one.last_row >= band.y0) found.push_back(one);
+    }
+    /// Columns count from x0 on.
+    static void of_block(std::span<const MetricCentre> of_band, const Block& block, std::vector<MetricCentre>& found) {
+        found.clear();
+        const auto x0 = static_cast<float>(block.x0), x1 = static_cast<float>(block.x1);
+        for (const MetricCentre& one : of_band) {
+            if (one.first_x >= x1 || one.last_x < x0) continue;
+            found.push_back(one);
+            found.back().first_x -= x0, found.back().last_x -= x0;
+        }
     }
 
   private:
     static constexpr int everywhere = 1 << 24;
+    static constexpr auto far = static_cast<float>(everywhere);
 
-    MetricCentre made(std::uint32_t c, int first, int last) const {
-        const ClusterCentre& centre = centres_[c];
-        return {centre.position, centre.normal, centre.flux, static_cast<float>(first), static_cast<float>(last), c};
+    MetricCentre made(std::uint32_t c, const ClusterCentre& centre) const {
+        MetricCentre one{centre.position, centre.normal, centre.flux, -far, far, -everywhere, everywhere, c};
+        if (!splats_) return one;
+        one.first_x = static_cast<float>(centre.x - before_), one.last_x = static_cast<float>(centre.x + after_);
+        one.first_row = centre.y - before_, one.last_row = centre.y + after_;
+        return one;
     }
     int before_, after_;
     bool splats_;
-    std::span<const ClusterCentre> centres_;
     std::vector<MetricCentre> all_;
 };
 
@@ -136,7 +142,7 @@ struct Strays {
     }
     void assign(float flux_scale, const MetricWeights& weights, std::span<const MetricCentre> centres) const {
         std::vector<std::uint32_t> nearest(cluster.size());
-        const TexelRow row{position.data(), normal.data(), flux.data(), static_cast<int>(cluster.size()), flux_scale};
+        const TexelRow row{position.data(), normal.data(), flux.data(), static_cast<int>(cluster.size()), 0, flux_scale};
         nearest_centres(row, weights, centres, nearest.data());
         for (std::size_t i = 0; i < cluster.size(); ++i) *cluster[i] = nearest[i];
     }
@@ -156,23 +162,23 @@ std::uint64_t assign_texels(const KMeans& technique, const LightMaps& maps, cons
         const float flux_scale = metric.flux_scale(band.map);
         std::uint32_t* const nearest = cluster.data() + first[band.map];
         const int columns = candidates.splats() ? block_columns : map.size;
-        std::vector<std::uint32_t> of_block;
-        std::vector<MetricCentre> memory;
+        std::vector<MetricCentre> of_band, of_block;
+        candidates.of_band(band, of_band);
+        Strays lost;
         for (int x0 = 0; x0 < map.size; x0 += columns) {
-            const Block block{x0, std::min(x0 + columns, map.size), band.y0, band.y1};
-            if (candidates.splats()) candidates.of_block(block, of_block);
+            const Block block{x0, std::min(x0 + columns, map.size)};
+            Candidates::of_block(of_band, block, of_block);
             for (int y = band.y0; y < band.y1; ++y) {
                 const std::size_t at = static_cast<std::size_t>(y) * map.size + x0;
-                const TexelRow row{map.position.data() + at, map.normal.data() + at, map.flux.data() + at, block.x1 - x0,
-                                   flux_scale};
-                nearest_centres(row, metric.weights(), candidates.of_row(of_block, x0, y, memory), nearest + at);
+                const TexelRow row{
+                    map.position.data() + at, map.normal.data() + at, map.flux.data() + at, block.x1 - x0, y, flux_scale};
+                if (!nearest_centres(row, metric.weights(), of_block, nearest + at)) continue;
+                for (std::size_t i = at; i < at + static_cast<std::size_t>(row.count); ++i)
+                    if (nearest[i] == no_virtual_light && sends(map, i)) lost.add(map, i, nearest + i);
             }
         }
-        Strays lost;
-        const auto begin = static_cast<std::size_t>(band.y0) * map.size, end = static_cast<std::size_t>(band.y1) * map.size;
-        for (std::size_t i = begin; i < end; ++i)
-            if (nearest[i] == no_virtual_light && sends(map, i)) lost.add(map, i, nearest + i);
-        lost.assign(flux_scale, metric.weights(), candidates.all());
+        if (lost.cluster.empty()) return;
+        lost.assign(flux_scale, metric.weights(), candidates.anywhere());
         strays += lost.cluster.size();
     });
     return strays;
@@ -190,8 +196,8 @@ ClusterSums sum_texels(const LightMaps& maps, const Buffer<std::uint32_t>& clust
     return all;
 }
 
-std::vector<std::uint32_t> pick_members(const LightMaps& maps, const Buffer<std::uint32_t>& cluster, std::span<const vec3> places,
-                                        Pick pick) {
+std::vector<std::uint32_t> pick_members(const LightMaps& maps, const Buffer<std::uint32_t>& cluster,
+                                        std::span<const TypicalPlace> places, Pick pick) {
     std::vector<std::vector<PickedTexel>> parts(sum_pieces, std::vector<PickedTexel>(places.size()));
     for_pieces(maps, [&](std::size_t piece, std::size_t m, std::size_t begin, std::size_t end, std::size_t first) {
         pick_texels({maps.maps[m], cluster.data(), first, begin, end}, places, pick == Pick::furthest, parts[piece]);

@@ -46,10 +46,16 @@ struct ClusterSums {
 
     std::uint32_t members(std::size_t c) const { return sums[c].members; }
     vec3 mean(std::size_t c) const { return origin[c] + vec3(sums[c].position / sums[c].weight); }
-    /// Of the disk with the same spread about its middle: a disk of radius R has a mean square distance of R^2 / 2.
-    double spread_area(std::size_t c) const {
+    /// Mean square distance from the mean.
+    double spread2(std::size_t c) const {
         const glm::dvec3 middle = sums[c].position / sums[c].weight;
-        return 2.0 * std::numbers::pi * std::fmax(sums[c].square / sums[c].weight - glm::dot(middle, middle), 0.0);
+        return std::fmax(sums[c].square / sums[c].weight - glm::dot(middle, middle), 0.0);
+    }
+    /// Of the disk with the same spread about its middle: a disk of radius R has a mean square distance of R^2 / 2.
+    double spread_area(std::size_t c) const { return 2.0 * std::numbers::pi * spread2(c); }
+    TypicalPlace typical(std::size_t c) const {
+        const auto length = static_cast<float>(glm::length(sums[c].normal));
+        return {mean(c), length > 0 ? vec3(sums[c].normal) / length : vec3(0), static_cast<float>(spread2(c))};
     }
 };
 /// `origins`: of each cluster, near its texels.
@@ -58,7 +64,7 @@ ClusterSums sum_texels(const LightMaps& maps, const Buffer<std::uint32_t>& clust
 /// The member next to a place of each cluster, or furthest from it: numbers of texels over all maps; no_virtual_light without
 /// members.
 enum class Pick { nearest, furthest };
-std::vector<std::uint32_t> pick_members(const LightMaps& maps, const Buffer<std::uint32_t>& cluster, std::span<const vec3> places,
-                                        Pick pick);
+std::vector<std::uint32_t> pick_members(const LightMaps& maps, const Buffer<std::uint32_t>& cluster,
+                                        std::span<const TypicalPlace> places, Pick pick);
 
 }  // namespace interreflect

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <stdexcept>
 
 #include "virtual_lights/cluster/cluster_texels.h"
 #include "virtual_lights/sample/texel_lights.h"
@@ -30,18 +31,17 @@ class Clustering {
         std::vector<vec3> origins;
         for (const ClusterCentre& centre : centres_) origins.push_back(centre.position);
         sums_ = sum_texels(maps_, cluster_, std::move(origins));
-        means_.resize(centres_.size());
-        for (std::size_t c = 0; c < centres_.size(); ++c) means_[c] = sums_.members(c) > 0 ? sums_.mean(c) : vec3(0);
-        nearest_ = pick_members(maps_, cluster_, means_, Pick::nearest);
+        typical_.resize(centres_.size());
+        for (std::size_t c = 0; c < centres_.size(); ++c) typical_[c] = sums_.members(c) > 0 ? sums_.typical(c) : TypicalPlace{};
+        nearest_ = pick_members(maps_, cluster_, typical_, Pick::nearest);
         for (std::size_t c = 0; c < centres_.size(); ++c) {
             if (sums_.members(c) == 0) continue;
             centres_[c] = centre_of_texel(nearest_[c]);
-            const auto length = static_cast<float>(glm::length(sums_.sums[c].normal));
-            if (length > 0) centres_[c].normal = vec3(sums_.sums[c].normal) / length;
-            centres_[c].position = means_[c];
+            if (typical_[c].normal != vec3(0)) centres_[c].normal = typical_[c].normal;
+            centres_[c].position = typical_[c].position;
         }
     }
-    /// Centres without texels start anew at the furthest texels of the clusters that cover most.
+    /// Centres without texels start anew at the furthest texels of the clusters that have most texels.
     std::uint64_t reseed() {
         std::vector<std::uint32_t> order(centres_.size());
         std::iota(order.begin(), order.end(), 0U);
@@ -51,7 +51,7 @@ class Clustering {
         std::uint64_t reseeded = 0;
         for (std::size_t c = 0; c < centres_.size(); ++c) {
             if (sums_.members(c) > 0) continue;
-            if (furthest.empty()) furthest = pick_members(maps_, cluster_, means_, Pick::furthest);
+            if (furthest.empty()) furthest = pick_members(maps_, cluster_, typical_, Pick::furthest);
             if (next == order.size() || sums_.members(order[next]) < 2) break;
             centres_[c] = centre_of_texel(furthest[order[next++]]);
             ++reseeded;
@@ -79,8 +79,9 @@ class Clustering {
         const ReflectiveShadowMap& map = maps_.maps[static_cast<std::size_t>(centre.map)];
         const std::size_t texel = static_cast<std::size_t>(centre.y) * map.size + centre.x;
         const auto members = static_cast<float>(sums_.members(c));
-        made.position[c] = technique_.centre == "mean" ? centre.position : map.position[texel];
-        made.normal[c] = centre.normal;
+        const bool mean = technique_.centre == "mean";
+        made.position[c] = mean ? centre.position : map.position[texel];
+        made.normal[c] = mean || map.normal[texel] == vec3(0) ? centre.normal : map.normal[texel];
         made.flux[c] = technique_.flux == "centre" ? map.flux[texel] * members : vec3(sums_.sums[c].flux);
         const double own = sums_.sums[c].area, spread = members < 2 ? own : sums_.spread_area(c);
         made.area[c] = static_cast<float>(technique_.area == "texels" ? own : std::min(own, spread));
@@ -96,7 +97,7 @@ class Clustering {
     std::vector<ClusterCentre> centres_;
     Buffer<std::uint32_t> cluster_;
     ClusterSums sums_;
-    std::vector<vec3> means_;
+    std::vector<TypicalPlace> typical_;
     std::vector<std::uint32_t> nearest_;
     std::uint64_t strays_ = 0;
 };
@@ -105,9 +106,10 @@ class Clustering {
 
 VirtualLights cluster_lights(const KMeans& technique, const VirtualLights& seeds, const LightMaps& maps,
                              const VirtualLights* last, std::uint32_t) {
+    if (seeds.map_sizes != sizes_of(maps)) throw std::invalid_argument("KMeans: the seeds are not texels of these maps");
     if (seeds.size() == 0) {
         VirtualLights none = make_virtual_lights(0);
-        none.map_sizes = sizes_of(maps);
+        none.map_sizes = seeds.map_sizes;
         return none;
     }
     Clustering clustering(technique, maps, seeds.size());

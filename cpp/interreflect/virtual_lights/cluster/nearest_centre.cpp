@@ -34,7 +34,7 @@ HWY_INLINE Vector squared_distance(const Vec3& a, const vec3& b) {
     return dot(to, to);
 }
 
-void find_nearest(const TexelRow& row, const MetricWeights& weights, const MetricCentre* centres, std::size_t count,
+bool find_nearest(const TexelRow& row, const MetricWeights& weights, const MetricCentre* centres, std::size_t count,
                   std::uint32_t* nearest) {
     const Tag d;
     const hn::RebindToUnsigned<Tag> du;
@@ -45,6 +45,7 @@ void find_nearest(const TexelRow& row, const MetricWeights& weights, const Metri
     const Vector by_square = hn::Mul(by_position, by_position), slack = hn::Set(d, 1.0001f);
     alignas(64) vec3 rest[3][16];
     alignas(64) std::uint32_t found[16];
+    bool strays = false;
     for (int x = 0; x < row.count; x += lanes) {
         const int left = std::min(lanes, row.count - x);
         const vec3 *position = row.position + x, *normal = row.normal + x, *flux = row.flux + x;
@@ -68,6 +69,7 @@ void find_nearest(const TexelRow& row, const MetricWeights& weights, const Metri
         auto winner = hn::Set(du, no_virtual_light);
         for (std::size_t c = 0; c < count; ++c) {
             const MetricCentre& centre = centres[c];
+            if (row.row < centre.first_row || row.row > centre.last_row) continue;
             const Vec3 facing{hn::Set(d, centre.normal.x), hn::Set(d, centre.normal.y), hn::Set(d, centre.normal.z)};
             const Vector squared = squared_distance(texel_position, centre.position);
             if (hn::AllTrue(d, hn::Gt(hn::Mul(squared, by_square), bound))) continue;
@@ -80,9 +82,12 @@ void find_nearest(const TexelRow& row, const MetricWeights& weights, const Metri
             bound = hn::Mul(slack, hn::Mul(least, least));
             winner = hn::IfThenElse(hn::RebindMask(du, nearer), hn::Set(du, centre.cluster), winner);
         }
+        const auto none = hn::Eq(winner, hn::Set(du, no_virtual_light));
+        strays |= !hn::AllFalse(du, hn::And(none, hn::RebindMask(du, lit)));
         hn::Store(hn::IfThenElse(hn::RebindMask(du, lit), winner, hn::Set(du, no_virtual_light)), du, found);
         std::copy(found, found + left, nearest + x);
     }
+    return strays;
 }
 
 }  // namespace HWY_NAMESPACE
@@ -93,9 +98,9 @@ HWY_AFTER_NAMESPACE();
 namespace interreflect {
 HWY_EXPORT(find_nearest);
 
-void nearest_centres(const TexelRow& row, const MetricWeights& weights, std::span<const MetricCentre> centres,
+bool nearest_centres(const TexelRow& row, const MetricWeights& weights, std::span<const MetricCentre> centres,
                      std::uint32_t* nearest) {
-    HWY_DYNAMIC_DISPATCH(find_nearest)(row, weights, centres.data(), centres.size(), nearest);
+    return HWY_DYNAMIC_DISPATCH(find_nearest)(row, weights, centres.data(), centres.size(), nearest);
 }
 
 }  // namespace interreflect

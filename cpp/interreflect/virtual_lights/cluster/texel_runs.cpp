@@ -1,6 +1,7 @@
 #include "virtual_lights/cluster/texel_runs.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "data/virtual_lights.h"
 
@@ -13,7 +14,7 @@
 
 #include "math/lanes-inl.h"
 
-// Roofline: 44 bytes of a texel to sum it, 16 to pick it. Neighbours are mostly of one cluster: lanes are summed for as long as
+// Roofline: 44 bytes of a texel to sum it, 28 to pick it. Neighbours are mostly of one cluster: lanes are summed for as long as
 // it stays the same.
 HWY_BEFORE_NAMESPACE();
 namespace interreflect {
@@ -146,33 +147,35 @@ struct Summing {
 };
 
 struct Picking {
-    const vec3* places;
+    const TypicalPlace* places;
     PickedTexel* picked;
     Vector sign;
     std::uint32_t current = no_virtual_light;
-    Vec3 place{};
-    Vector least{};
+    Vec3 place{}, normal{};
+    Vector spread2{}, least{};
     hn::Vec<Unsigned> winner{};
 
     HWY_INLINE void same(std::uint32_t cluster, LaneMask mask, std::uint32_t, const Texels& texels, std::size_t first) {
         if (cluster != current) end(), begin(cluster);
         const Unsigned du;
-        const Vec3 to = difference(load_vectors(texels.position), place);
-        const Vector distance = hn::Mul(sign, dot(to, to));
+        const Vec3 to = difference(load_vectors(texels.position), place), turn = difference(load_vectors(texels.normal), normal);
+        const Vector distance = hn::Mul(sign, hn::MulAdd(dot(turn, turn), spread2, dot(to, to)));
         const auto nearer = hn::And(mask, hn::Lt(distance, least));
         least = hn::IfThenElse(nearer, distance, least);
         winner = hn::IfThenElse(hn::RebindMask(du, nearer), hn::Iota(du, static_cast<std::uint32_t>(first)), winner);
     }
     HWY_INLINE void one(std::uint32_t cluster, const Texels& texels, std::size_t lane, std::size_t number) {
-        const vec3 to = texels.position[lane] - places[cluster];
-        const float distance = hn::GetLane(sign) * glm::dot(to, to);
+        const TypicalPlace& at = places[cluster];
+        const vec3 to = texels.position[lane] - at.position, turn = texels.normal[lane] - at.normal;
+        const float distance = hn::GetLane(sign) * std::fma(glm::dot(turn, turn), at.spread2, glm::dot(to, to));
         if (distance < picked[cluster].distance) picked[cluster] = {distance, static_cast<std::uint32_t>(number)};
     }
     HWY_INLINE void begin(std::uint32_t cluster) {
         least = hn::Inf(Tag());
         winner = hn::Set(Unsigned(), ~0U);
         current = cluster;
-        place = same_vector(places[cluster]);
+        place = same_vector(places[cluster].position), normal = same_vector(places[cluster].normal);
+        spread2 = hn::Set(Tag(), places[cluster].spread2);
     }
     HWY_INLINE void end() {
         if (current == no_virtual_light) return;
@@ -194,7 +197,7 @@ void sum_range(const TexelRange& range, const vec3* origins, ClusterSum* sums) {
         for_clusters({range.map, range.cluster, range.first, begin, std::min(begin + most, range.end)}, summing);
     }
 }
-void pick_range(const TexelRange& range, const vec3* places, bool furthest, PickedTexel* picked) {
+void pick_range(const TexelRange& range, const TypicalPlace* places, bool furthest, PickedTexel* picked) {
     Picking picking{places, picked, hn::Set(Tag(), furthest ? -1.0f : 1.0f)};
     for_clusters(range, picking);
 }
@@ -239,7 +242,7 @@ HWY_EXPORT(extent_of);
 void add_texels(const TexelRange& texels, std::span<const vec3> origins, std::span<ClusterSum> sums) {
     HWY_DYNAMIC_DISPATCH(sum_range)(texels, origins.data(), sums.data());
 }
-void pick_texels(const TexelRange& texels, std::span<const vec3> places, bool furthest, std::span<PickedTexel> picked) {
+void pick_texels(const TexelRange& texels, std::span<const TypicalPlace> places, bool furthest, std::span<PickedTexel> picked) {
     HWY_DYNAMIC_DISPATCH(pick_range)(texels, places.data(), furthest, picked.data());
 }
 LitExtent lit_extent(const ReflectiveShadowMap& map, std::size_t begin, std::size_t end) {

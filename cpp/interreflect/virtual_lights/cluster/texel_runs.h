@@ -28,12 +28,18 @@ struct TexelRange {
 };
 void add_texels(const TexelRange& texels, std::span<const vec3> origins, std::span<ClusterSum> sums);
 
+/// What a cluster's texels are compared with. Their distance is sqrt(|x - x'|^2 + spread^2 |n - n'|^2): a normal that points away
+/// counts as a place about as far off as the cluster is wide.
+struct TypicalPlace {
+    vec3 position{0}, normal{0};
+    float spread2 = 0;  // mean square distance of the texels from their mean
+};
 /// The texel of a cluster nearest to its place, the first of several; `furthest`: with the distance squared made negative.
 struct PickedTexel {
     float distance = std::numeric_limits<float>::infinity();  // squared
     std::uint32_t texel = ~0U;                                // number of all
 };
-void pick_texels(const TexelRange& texels, std::span<const vec3> places, bool furthest, std::span<PickedTexel> picked);
+void pick_texels(const TexelRange& texels, std::span<const TypicalPlace> places, bool furthest, std::span<PickedTexel> picked);
 
 /// What texels that send light on span, and the largest component of their flux.
 struct LitExtent {

@@ -62,6 +62,8 @@ struct Receiving {
     Vector distance, height;  // height: of the plane over the light, negative where it faces the light
     LaneMask lit;  // that the light reaches at all: its middle is not below the pixel's horizon, as one is behind a thin wall
 
+    HWY_INLINE Receiving(const Vec3& facing, Vector far, Vector above, LaneMask some)
+        : local{}, plane(facing), distance(far), height(above), lit(some) {}
     HWY_INLINE Receiving(const ShadowedLight& light, const Receivers& receivers, int first, LaneMask reached) : lit(reached) {
         const Tag d;
         const auto load = [&](const float(*from)[Receivers::capacity]) HWY_ATTR {

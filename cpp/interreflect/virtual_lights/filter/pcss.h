@@ -7,7 +7,9 @@ namespace interreflect {
 /// Soft shadows of a disk as if light, blocker and pixel lay in parallel planes: the mean depth of what blocks gives the width of
 /// the penumbra, (z_receiver - z_blocker) / z_blocker times the light's [equation 3], and lookups are spread over as much of the
 /// map. Depths are planar, along the light's normal: recovered from the map's radial ones (ERRATA.md). The light's radius is
-/// sqrt(area / pi).
+/// sqrt(area / pi). Lookups are left out where they would tell nothing new: a pixel without blockers is lit, one whose whole
+/// search is blocked is not, unless its penumbra is wider than the search, and where the first half of the penumbra's lookups
+/// agree the other half is left out [Uralsky 2005, GPU Gems 2, 17].
 struct Pcss {
     int blocker_samples = 8;
     int filter_samples = 16;

@@ -27,7 +27,7 @@ void visibility(const TracedDisk& technique, const ShadowedLight& light, const R
                 // Ends short of the surface on which the disk lies.
                 packet.set(static_cast<int>(k), {origin, 0.0f, to, 1.0f - 0x1p-14f});
             }
-            const std::uint32_t active = lanes == 32 ? ~0U : (1U << lanes) - 1U;
+            const std::uint32_t active = (1U << lanes) - 1U;
             seen += lanes - static_cast<std::uint32_t>(std::popcount(light.intersector.occluded(packet, active)));
         }
         counts.shadow_rays += samples;

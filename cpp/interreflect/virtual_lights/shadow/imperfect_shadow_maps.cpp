@@ -63,7 +63,8 @@ SurfacePoints scatter_points(const ImperfectShadowMaps& technique, const Scene& 
         cdf[i + 1] = area_of(world_corners(*scene.geometry, all[i].instance, all[i].triangle));
     const double area = make_cdf(cdf);
     const std::size_t n = area > 0 ? static_cast<std::size_t>(technique.points) : 0;
-    SurfacePoints points{Buffer<vec3>(n), Buffer<vec3>(n), Buffer<std::uint32_t>(n), static_cast<float>(area)};
+    SurfacePoints points{Buffer<vec3>(n), Buffer<vec3>(n), Buffer<std::uint32_t>(n), static_cast<float>(area),
+                         scene.geometry->instances.size()};
     const auto& arrays = *scene.geometry->arrays;
     parallel_blocks(n, 4096, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
@@ -94,6 +95,9 @@ LightShadows shadow_lights(const ImperfectShadowMaps& technique, const VirtualLi
     if (n * texels > most_texels)
         throw std::invalid_argument("ImperfectShadowMaps: " + std::to_string(n) + " lights' maps of " +
                                     std::to_string(technique.size) + "^2 texels are more than 4096^2 together");
+    if (points.size() > 0 && points.instances != scene.geometry->instances.size())
+        throw std::invalid_argument("ImperfectShadowMaps: the points are of a scene with " + std::to_string(points.instances) +
+                                    " instances, this one has " + std::to_string(scene.geometry->instances.size()));
     LightShadows shadows;
     shadows.kind = LightShadows::Kind::maps;
     shadows.size = technique.size;

@@ -44,7 +44,7 @@ struct ImperfectShadowMaps {
 /// The points of a scene: the same for any number of lights. Body poses may change later, the surface may not.
 SurfacePoints scatter_points(const ImperfectShadowMaps& technique, const Scene& scene);
 
-/// std::invalid_argument where the maps would have more than 4096 x 4096 texels.
+/// std::invalid_argument where the maps would have more than 4096 x 4096 texels, and for points of another scene.
 LightShadows shadow_lights(const ImperfectShadowMaps& technique, const VirtualLights& lights, const SurfacePoints& points,
                            const Scene& scene);
 

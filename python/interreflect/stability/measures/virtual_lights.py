@@ -59,13 +59,16 @@ def penumbra_width(trial: Trial) -> Reading:
 
 
 def missing_light(trial: Trial) -> Reading:
-    """Share of light that is missing where the truth's columns have half of their largest or more; light in excess makes up for none."""
+    """Share of light that is missing where the truth's columns have half of their largest or more; light in excess makes up for none,
+    nor does what leaks to where there should be none: it is interpolated from there and taken off."""
     frame, truth = trial.render(), trial.truth()
     wanted = _columns(truth.indirect)
-    lit = wanted > wanted.max() / 2
+    lit, dark = wanted > wanted.max() / 2, np.flatnonzero(wanted < wanted.max() / 100)
 
     def error(image: Image) -> float:
-        return float(np.maximum(wanted - _columns(image), 0)[lit].mean() / wanted[lit].mean())
+        found = _columns(image)
+        leaked = np.interp(np.arange(len(found)), dark, found[dark]) if len(dark) else 0.0
+        return float(np.maximum(wanted - (found - leaked), 0)[lit].mean() / wanted[lit].mean())
 
     return Reading(error(frame.indirect), frame.indirect, truth.indirect, floor=error(truth.halves[0] - truth.direct))
 

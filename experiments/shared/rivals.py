@@ -1,0 +1,69 @@
+"""Four ways to one bounce of indirect light at settings from milliseconds to seconds, and the scenes that they meet on."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import interreflect as ir
+from experiments.shared.scenes import sponza, sponza_by_a_spot, veach_ajar
+from interreflect.study.ladder import Mechanism, mechanisms
+
+PAPERS = ("64 with PCSS", "512 simple", "256 points", "128 area lights")
+
+
+@dataclass(frozen=True)
+class Place:
+    """A scene, the camera that sees it, and the most samples a pixel of its truth: as many as a minute allows."""
+
+    make: Callable[[], ir.Scene]
+    camera: str
+    spp: int
+
+
+# FileNotFoundError of `make` says where a scene was looked for.
+PLACES: Mapping[str, Place] = {
+    "Cornell box by a spot": Place(lambda: ir.scenes.cornell_box(light="spot"), "front", 2048),
+    "atrium": Place(ir.scenes.atrium, "court", 1024),
+    "Sponza by a spot": Place(sponza_by_a_spot, "nave", 1024),
+    "Sponza by a sun": Place(sponza, "nave", 1024),
+    "Veach's door ajar": Place(veach_ajar, "room", 1024),
+}
+
+
+BLACK = "direct light alone"
+SMOOTH_SKY = ir.TracedSky(samples=16, filter_radius=2)  # the sky's direct light is not what is compared: cones have it without noise
+
+
+def rivals() -> dict[str, Any]:
+    """Each way's knobs that trade time for error; and direct light alone, which no way may lose against."""
+    cones, caches = ir.methods.VoxelConeTracing(), ir.methods.ClusteredRadianceCaching()
+    lights = ir.methods.VirtualAreaLights(sky=SMOOTH_SKY)
+    simple, pcss = ({"filter_shadows": lookup} for lookup in (ir.SimpleLookup(), ir.Pcss()))
+    rays = {"shadow_lights": ir.TracedVisibility(), **simple}
+    ways = {
+        **{f"{n} lights, rays": (n, rays) for n in (16, 64, 256, 512)},
+        **{f"{n} lights, PCSS": (n, pcss) for n in (64, 256, 512)},
+        "64 lights, simple": (64, simple),
+    }
+    return {
+        BLACK: ir.methods.ConstantAmbient(ambient=0.0, sky=SMOOTH_SKY),
+        **{f"cones, grid {n}, interleaved": cones.replace({"grid.resolution": n}) for n in (64, 128)},
+        "cones, grid 128": cones.replace(share=ir.EveryPixel()),
+        **{f"{n} caches": caches.replace({"distribute.caches": n}) for n in (512, 2048, 4096)},
+        **{name: lights.replace({"sample_lights.lights": n}).replace(way) for name, (n, way) in ways.items()},
+        **{f"the paper's {name}": ir.methods.VirtualAreaLights.preset(name).replace(sky=SMOOTH_SKY) for name in PAPERS},
+        **{f"denoised paths, {n} a pixel": ir.methods.PathTracingDenoised(bounces=1, spp=n) for n in (1, 2, 4, 16)},
+    }
+
+
+def rungs() -> list[Mechanism]:
+    """The usual mechanisms, with caches and virtual lights as two more ways to one diffuse bounce."""
+    usual = mechanisms()
+    after = [rung.name for rung in usual].index("one diffuse bounce") + 1
+    caches = ir.sweep(ir.methods.ClusteredRadianceCaching(), {"distribute.caches": [512, 2048]})
+    rays = ir.methods.VirtualAreaLights(sky=SMOOTH_SKY, shadow_lights=ir.TracedVisibility(), filter_shadows=ir.SimpleLookup())
+    lights = ir.sweep(rays, {"sample_lights.lights": [32, 128, 512]})
+    ours = [Mechanism("one bounce from caches", caches), Mechanism("one bounce from virtual lights", lights)]
+    return [*usual[:after], *ours, *usual[after:]]
