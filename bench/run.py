@@ -10,7 +10,7 @@ import time
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-SUITES = ("core", "voxels", "caches", "virtual-lights")
+SUITES = ("core", "voxels", "caches", "virtual-lights", "surfels")
 
 
 def main(suite: str) -> None:

@@ -19,6 +19,7 @@ ABOVE = {
     "direct": {"data", "math", "visibility", "shading", "voxels"},
     "caches": {"data", "math", "visibility", "shading", "voxels", "direct"},
     "reference": {"data", "math", "visibility", "shading", "voxels", "direct"},
+    "surfels": {"data", "math", "visibility", "shading", "voxels", "direct"},
     "virtual_lights": {"data", "math", "visibility", "shading", "voxels", "direct"},
 }
 

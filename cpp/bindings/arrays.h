@@ -45,6 +45,16 @@ py::array_t<Scalar> view(const Scalar* data, std::vector<py::ssize_t> shape, py:
     py::detail::array_proxy(array.ptr())->flags &= ~py::detail::npy_api::NPY_ARRAY_WRITEABLE_;
     return array;
 }
+/// (n, components) of n vectors.
+template <class T>
+py::array_t<float> vectors(const Buffer<T>& data, py::handle owner) {
+    return view(reinterpret_cast<const float*>(data.data()),
+                {static_cast<py::ssize_t>(data.size()), static_cast<py::ssize_t>(sizeof(T) / sizeof(float))}, owner);
+}
+template <class T>
+py::array_t<T> numbers(const Buffer<T>& data, py::handle owner) {
+    return view(data.data(), {static_cast<py::ssize_t>(data.size())}, owner);
+}
 inline py::array_t<float> image_view(const Buffer<vec3>& data, int width, int height, py::handle owner) {
     return view(reinterpret_cast<const float*>(data.data()), {height, width, 3}, owner);
 }

@@ -44,5 +44,6 @@ PYBIND11_MODULE(_core, m) {
     bind_march(m);
     bind_caches(m);
     bind_virtual_lights(m);
+    bind_surfels(m);
     bind_calibration(m);
 }

@@ -2560,6 +2560,12 @@ class VirtualLights:
         """
 
     @property
+    def offset(self) -> numpy.typing.NDArray[numpy.float32]:
+        """
+        (n,): how far off the surface rays start, scene units.
+        """
+
+    @property
     def position(self) -> numpy.typing.NDArray[numpy.float32]:
         """
         (n, 3): world space.
@@ -2979,7 +2985,7 @@ class PointToDisk:
     def __eq__(self, other: object) -> bool:
         ...
 class DiskVector:
-    """A light is a disk; exact while all of it is above the receiver's horizon."""
+    """A light is a disk, cut at the receiver's horizon; in closed form."""
     description: ClassVar[dict[str, Any]]
     stages: ClassVar[tuple[str, ...]]
 
@@ -3016,6 +3022,580 @@ class DiskIntegral:
 
     def __eq__(self, other: object) -> bool:
         ...
+class Surfels:
+    """
+    Disks that stand for a scene's still surface; n in parallel arrays.
+    """
+
+    def __len__(self) -> int:
+        ...
+
+    @property
+    def area(self) -> numpy.typing.NDArray[numpy.float32]:
+        """
+        (n,): scene units squared.
+        """
+
+    @property
+    def bytes(self) -> int:
+        ...
+
+    @property
+    def extent(self) -> float:
+        """
+        Diagonal of the still surface's bounds, scene units.
+        """
+
+    @property
+    def normal(self) -> numpy.typing.NDArray[numpy.float32]:
+        """
+        (n, 3): unit, of the triangle's front.
+        """
+
+    @property
+    def position(self) -> numpy.typing.NDArray[numpy.float32]:
+        """
+        (n, 3): world space.
+        """
+
+    @property
+    def triangle(self) -> numpy.typing.NDArray[numpy.uint32]:
+        """
+        (n,): number over all triangles of the scene.
+        """
+class ClusteredSurfels:
+    """
+    Surfels in the order of a binary tree's leaves, and the tree in post-order.
+    """
+
+    def __len__(self) -> int:
+        ...
+
+    @property
+    def area(self) -> numpy.typing.NDArray[numpy.float32]:
+        """
+        (2n - 1,): of each node's surfels, scene units squared.
+        """
+
+    @property
+    def bytes(self) -> int:
+        ...
+
+    @property
+    def inversions(self) -> int:
+        """
+        Merges nearer than one of those that they build on.
+        """
+
+    @property
+    def leaf_end(self) -> numpy.typing.NDArray[numpy.uint32]:
+        """
+        (2n - 1,): the node's surfels are [leaf_end - leaves, leaf_end).
+        """
+
+    @property
+    def leaves(self) -> numpy.typing.NDArray[numpy.uint32]:
+        """
+        (2n - 1,): surfels under each node; the right child of node i is i - 1, the left one i - 2 leaves[i - 1].
+        """
+
+    @property
+    def node(self) -> numpy.typing.NDArray[numpy.uint32]:
+        """
+        (n,): of each surfel.
+        """
+
+    @property
+    def surfels(self) -> Surfels:
+        """
+        In the order of the leaves.
+        """
+class NodeLight:
+    """
+    What every node of a tree of surfels sends on.
+    """
+
+    @property
+    def bytes(self) -> int:
+        ...
+
+    @property
+    def radiosity(self) -> bool:
+        ...
+
+    @property
+    def value(self) -> numpy.typing.NDArray[numpy.float32]:
+        """
+        (2n - 1, 3): flux, W, or radiosity, W/m^2.
+        """
+class CacheSites:
+    """
+    Where caches of incident radiance stand.
+    """
+
+    def __len__(self) -> int:
+        ...
+
+    @property
+    def bytes(self) -> int:
+        ...
+
+    @property
+    def counts(self) -> Counts:
+        ...
+
+    @property
+    def normal(self) -> numpy.typing.NDArray[numpy.float32]:
+        """
+        (n, 3): unit, or (0, 0, 0) where light may come from everywhere.
+        """
+
+    @property
+    def position(self) -> numpy.typing.NDArray[numpy.float32]:
+        """
+        (n, 3): world space.
+        """
+class CacheLinks:
+    """
+    Which patches of surfels send light to each cache.
+    """
+
+    @property
+    def bytes(self) -> int:
+        ...
+
+    @property
+    def counts(self) -> Counts:
+        ...
+
+    @property
+    def node(self) -> numpy.typing.NDArray[numpy.uint32]:
+        """
+        (caches, links): node of the tree; a copy.
+        """
+
+    @property
+    def per_cache(self) -> int:
+        ...
+
+    @property
+    def radiosity(self) -> bool:
+        """
+        Whether they take the nodes' radiosity in place of flux.
+        """
+class LightCaches:
+    """
+    Incident radiance in spherical harmonics.
+    """
+
+    @property
+    def bands(self) -> int:
+        ...
+
+    @property
+    def bytes(self) -> int:
+        ...
+
+    @property
+    def chrominance_bands(self) -> int:
+        ...
+
+    @property
+    def coefficients(self) -> numpy.typing.NDArray[numpy.float32]:
+        """
+        (caches, bands^2 + 2 chrominance_bands^2): of red, green and blue, or where chrominance has fewer bands of Y, Co and Cg.
+        """
+
+    @property
+    def counts(self) -> Counts:
+        ...
+class SurfelLight:
+    """
+    What pixels get from caches of surfels' light.
+    """
+
+    @property
+    def bytes(self) -> int:
+        ...
+
+    @property
+    def counts(self) -> Counts:
+        ...
+
+    @property
+    def gathered(self) -> GatheredLight:
+        """
+        What arrives over the hemisphere: irradiance alone.
+        """
+
+    @property
+    def glossy(self) -> GlossyLight:
+        """
+        What the glossy lobe reflects: radiance alone.
+        """
+class RelaxedSurfels:
+    """Halton's points that push their neighbours away along the surface."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self, *, surfels: int=..., iterations: int=...) -> None:
+        ...
+
+    def replace(self, *, surfels: int=..., iterations: int=...) -> RelaxedSurfels:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+
+    @property
+    def surfels(self) -> int:
+        ...
+
+    @property
+    def iterations(self) -> int:
+        ...
+class XorshiftSurfels:
+    """Random points on every triangle."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self, *, surfels: int=...) -> None:
+        ...
+
+    def replace(self, *, surfels: int=...) -> XorshiftSurfels:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+
+    @property
+    def surfels(self) -> int:
+        ...
+class HaltonSurfels:
+    """Points of Halton's sequence on every triangle."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self, *, surfels: int=...) -> None:
+        ...
+
+    def replace(self, *, surfels: int=...) -> HaltonSurfels:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+
+    @property
+    def surfels(self) -> int:
+        ...
+class KdTree:
+    """Surfels halved at the median of the axis along which they spread most."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self, *, normal_weight: float=...) -> None:
+        ...
+
+    def replace(self, *, normal_weight: float=...) -> KdTree:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+
+    @property
+    def normal_weight(self) -> float:
+        ...
+class Agglomerative:
+    """The two nearest of all patches become one, over and over."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self, *, normal_weight: float=..., balance_weight: float=...) -> None:
+        ...
+
+    def replace(self, *, normal_weight: float=..., balance_weight: float=...) -> Agglomerative:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+
+    @property
+    def normal_weight(self) -> float:
+        ...
+
+    @property
+    def balance_weight(self) -> float:
+        ...
+class CacheGrid:
+    """Caches in the middles of the cells of a box about the scene."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self, *, nx: int=..., ny: int=..., nz: int=..., most_backs: float=...) -> None:
+        ...
+
+    def replace(self, *, nx: int=..., ny: int=..., nz: int=..., most_backs: float=...) -> CacheGrid:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+
+    @property
+    def nx(self) -> int:
+        ...
+
+    @property
+    def ny(self) -> int:
+        ...
+
+    @property
+    def nz(self) -> int:
+        ...
+
+    @property
+    def most_backs(self) -> float:
+        ...
+class LightMap:
+    """A cache for every texel of a map over the still surface, and a grid for all else."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self, *, texels: int=..., area_share: float=..., most_backs: float=..., grid: Any=...) -> None:
+        ...
+
+    def replace(self, *, texels: int=..., area_share: float=..., most_backs: float=..., grid: Any=...) -> LightMap:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+
+    @property
+    def texels(self) -> int:
+        ...
+
+    @property
+    def area_share(self) -> float:
+        ...
+
+    @property
+    def most_backs(self) -> float:
+        ...
+
+    @property
+    def grid(self) -> Any:
+        ...
+class PixelCaches:
+    """A cache for every pixel that sees a surface, linked anew in every frame."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self) -> None:
+        ...
+
+    def replace(self) -> PixelCaches:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+class RuntimeProjection:
+    """Links that are cones, projected to spherical harmonics when a cache is lit."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self, *, links: int=..., bands: int=..., rays: int=..., near_rays: int=..., pull: str=...) -> None:
+        ...
+
+    def replace(self, *, links: int=..., bands: int=..., rays: int=..., near_rays: int=..., pull: str=...) -> RuntimeProjection:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+
+    @property
+    def links(self) -> int:
+        ...
+
+    @property
+    def bands(self) -> int:
+        ...
+
+    @property
+    def rays(self) -> int:
+        ...
+
+    @property
+    def near_rays(self) -> int:
+        ...
+
+    @property
+    def pull(self) -> str:
+        ...
+class ShLinks:
+    """Links that hold the visible part of a patch in spherical harmonics."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self, *, links: int=..., bands: int=..., rays: int=..., near_rays: int=..., pull: str=...) -> None:
+        ...
+
+    def replace(self, *, links: int=..., bands: int=..., rays: int=..., near_rays: int=..., pull: str=...) -> ShLinks:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+
+    @property
+    def links(self) -> int:
+        ...
+
+    @property
+    def bands(self) -> int:
+        ...
+
+    @property
+    def rays(self) -> int:
+        ...
+
+    @property
+    def near_rays(self) -> int:
+        ...
+
+    @property
+    def pull(self) -> str:
+        ...
+class AllSurfels:
+    """Rays from every cache to surfels chosen anew in every frame; nothing is clustered or stored."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self, *, samples: int=..., bands: int=..., near_rays: int=...) -> None:
+        ...
+
+    def replace(self, *, samples: int=..., bands: int=..., near_rays: int=...) -> AllSurfels:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+
+    @property
+    def samples(self) -> int:
+        ...
+
+    @property
+    def bands(self) -> int:
+        ...
+
+    @property
+    def near_rays(self) -> int:
+        ...
+class SphericalHarmonicLobes:
+    """Diffuse and glossy lobes in spherical harmonics, against the caches' radiance."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self, *, chrominance_bands: int=...) -> None:
+        ...
+
+    def replace(self, *, chrominance_bands: int=...) -> SphericalHarmonicLobes:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+
+    @property
+    def chrominance_bands(self) -> int:
+        ...
+class DirectLinks:
+    """The BRDF itself over all links of the caches about a pixel."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self) -> None:
+        ...
+
+    def replace(self) -> DirectLinks:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
 def _rebuild(arg0: typing.Any, arg1: dict[str, typing.Any]) -> typing.Any:
     """
     Makes a technique again from its knobs (pickle).
@@ -3027,6 +3607,10 @@ def bounce_maps(scene: Scene, lights: VirtualLights, size: typing.SupportsInt | 
 def cluster_lights(technique: EveryRsmPixel | KMeans, seeds: VirtualLights, maps: LightMaps, last: VirtualLights | None=None, seed: typing.SupportsInt | typing.SupportsIndex=0) -> VirtualLights:
     """
     Virtual lights, each for several texels.
+    """
+def cluster_surfels(technique: Agglomerative | KdTree, surfels: Surfels) -> ClusteredSurfels:
+    """
+    A tree over surfels, and the surfels in the order of its leaves.
     """
 def cone_shadow(technique: VoxelCones, scene: Scene, gbuffer: GBuffer, pyramids: collections.abc.Sequence[Pyramid], seed: typing.SupportsInt | typing.SupportsIndex=0) -> DirectLight:
     """
@@ -3043,6 +3627,16 @@ def cone_step_rate(repeats: typing.SupportsInt | typing.SupportsIndex) -> float:
 def distribute(technique: CachePerPixel | Clustered | CubeFaceClustered | Equidistant | ReuseCaches, gbuffer: GBuffer, scene: Scene, last: CachePlaces | None=None) -> CachePlaces:
     """
     Where radiance caches stand.
+    """
+@typing.overload
+def evaluate(technique: SphericalHarmonicLobes, caches: LightCaches, sites: CacheSites, gbuffer: GBuffer, scene: Scene) -> SurfelLight:
+    """
+    What pixels get from caches.
+    """
+@typing.overload
+def evaluate(technique: DirectLinks, links: CacheLinks, light: NodeLight, sites: CacheSites, gbuffer: GBuffer, scene: Scene) -> SurfelLight:
+    """
+    What pixels get from the links of caches.
     """
 def fill(technique: TracedFill | ConeFill, places: CachePlaces, pyramids: collections.abc.Sequence[Pyramid], scene: Scene, seed: typing.SupportsInt | typing.SupportsIndex=0) -> FilledCaches:
     """
@@ -3068,6 +3662,10 @@ def join_lights(lists: collections.abc.Sequence[VirtualLights]) -> VirtualLights
     """
     Several lists of lights as one.
     """
+def light_caches(links: CacheLinks, light: NodeLight, bands: typing.SupportsInt | typing.SupportsIndex, chrominance_bands: typing.SupportsInt | typing.SupportsIndex=0) -> LightCaches:
+    """
+    The sum over each cache's links.
+    """
 def light_maps(scene: Scene, size: typing.SupportsInt | typing.SupportsIndex, emitter_views: typing.SupportsInt | typing.SupportsIndex, environment: collections.abc.Sequence[DirectionalLight]) -> LightMaps:
     """
     What all lights of a scene see; `environment`: directional lights that stand for the environment.
@@ -3080,6 +3678,16 @@ def light_voxels(technique: TracedLighting | ShadowMapInjection | ConeLighting |
     """
     The radiance that each voxel reflects. others: voxels of the scene's other parts. history: the last frame's LitVoxels, or the Pyramid made from them.
     """
+@typing.overload
+def link(technique: ShLinks, sites: CacheSites, surfels: ClusteredSurfels, scene: Scene) -> CacheLinks:
+    """
+    Which patches of surfels send light to each cache.
+    """
+@typing.overload
+def link(technique: RuntimeProjection, sites: CacheSites, surfels: ClusteredSurfels, scene: Scene) -> CacheLinks:
+    """
+    Which patches of surfels send light to each cache.
+    """
 def march(technique: TracedRays | DiffuseCones, pyramids: collections.abc.Sequence[Pyramid], gbuffer: GBuffer, scene: Scene, share: EveryPixel | Interleaved, seed: typing.SupportsInt | typing.SupportsIndex) -> GatheredLight:
     """
     Light that arrives over the hemisphere at the pixels.
@@ -3088,13 +3696,35 @@ def multiply_add_rate(repeats: typing.SupportsInt | typing.SupportsIndex) -> flo
     """
     Single-precision GFLOP/s of fused multiply-adds, best of `repeats`.
     """
+def open_sides(fronts: Surfels, scene: Scene) -> Surfels:
+    """
+    Those surfels whose side sees the front of something; on two-sided materials on both sides.
+    """
 def path_trace(scene: Scene, camera: Camera, width: typing.SupportsInt | typing.SupportsIndex, height: typing.SupportsInt | typing.SupportsIndex, *, samples: typing.SupportsInt | typing.SupportsIndex=1, milliseconds: typing.SupportsFloat | typing.SupportsIndex | None=None, bounces: typing.SupportsInt | typing.SupportsIndex | None=1, pixel: str='centre', pattern: typing.SupportsInt | typing.SupportsIndex=8, seed: typing.SupportsInt | typing.SupportsIndex=0) -> PathTraced:
     """
     Path tracing with exactly `bounces` indirect bounces (None: all); `samples` paths a pixel, fewer where `milliseconds` end sooner.
     """
+def pixel_sites(gbuffer: GBuffer) -> CacheSites:
+    """
+    A cache for every pixel that sees a surface.
+    """
 def place(grid: Grid, scene: Scene, camera: Camera | None=None, aspect: typing.SupportsFloat | typing.SupportsIndex=1.0) -> Domain:
     """
     The domain of a grid in a scene, for a picture `aspect` times as wide as high.
+    """
+@typing.overload
+def place_caches(technique: CacheGrid, scene: Scene) -> CacheSites:
+    """
+    Caches in a box about the scene.
+    """
+@typing.overload
+def place_caches(technique: LightMap, scene: Scene, texcoord: typing.Any) -> CacheSites:
+    """
+    Caches in the texels of a map, and in a box. texcoord: (3 triangles, 2) float32, of every corner, in texels; negative: the triangle has no chart.
+    """
+def place_surfels(technique: HaltonSurfels | XorshiftSurfels | RelaxedSurfels, scene: Scene) -> Surfels:
+    """
+    Disks that stand for the still surface.
     """
 def preconvolve(technique: LobeIntegral | MipChain, filled: FilledCaches) -> ConvolvedCaches:
     """
@@ -3103,6 +3733,10 @@ def preconvolve(technique: LobeIntegral | MipChain, filled: FilledCaches) -> Con
 def prefilter(technique: VolumeCoverage | SurfaceCoverage | Anisotropic | OctantCoverage | SphericalHarmonicVoxels, lit: LitVoxels) -> Pyramid:
     """
     Radiance and opacity of ever larger voxels.
+    """
+def pull(surfels: ClusteredSurfels, radiance: typing.Any, radiosity: bool=False) -> NodeLight:
+    """
+    The sum of the surfels' flux under every node, or the mean of their radiosity.
     """
 def ray_rates(repeats: typing.SupportsInt | typing.SupportsIndex) -> dict[str, typing.Any]:
     """
@@ -3115,6 +3749,10 @@ def read_bandwidth(repeats: typing.SupportsInt | typing.SupportsIndex, mebibytes
 def reflective_shadow_map(scene: Scene, light: typing.SupportsInt | typing.SupportsIndex, size: typing.SupportsInt | typing.SupportsIndex) -> ReflectiveShadowMap:
     """
     What a spot or directional light sees; `light` counts point, then spot, then directional lights.
+    """
+def sample_caches(technique: AllSurfels, sites: CacheSites, surfels: ClusteredSurfels, light: NodeLight, chrominance_bands: typing.SupportsInt | typing.SupportsIndex, scene: Scene, seed: typing.SupportsInt | typing.SupportsIndex=0) -> LightCaches:
+    """
+    Rays from every cache to surfels themselves.
     """
 def sample_lights(technique: EveryRsmPixel | HaltonLights, maps: LightMaps, seed: typing.SupportsInt | typing.SupportsIndex=0) -> VirtualLights:
     """
@@ -3140,6 +3778,14 @@ def shadow_lights(technique: TracedVisibility | ImperfectShadowMaps | Unshadowed
     """
 def sky(technique: TracedSky, scene: Scene, gbuffer: GBuffer, seed: typing.SupportsInt | typing.SupportsIndex=0) -> DirectLight:
     ...
+def still_triangles(scene: Scene) -> tuple[numpy.typing.NDArray[numpy.float32], int]:
+    """
+    (n, 3, 3) float32: corners of what does not move, world space, a copy; these are the scene's first n triangles. And how many it has in all.
+    """
+def surfel_pixels(surfels: ClusteredSurfels, scene: Scene) -> GBuffer:
+    """
+    Surfels as the pixels of a picture, row by row.
+    """
 def thread_limit() -> int:
     """
     How many threads work of the calling thread may use; 0: all.

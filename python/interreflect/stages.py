@@ -12,6 +12,7 @@ from interreflect import _core
 from interreflect.scenes.camera import Camera, checked_size
 from interreflect.scenes.lights import DirectionalLight
 from interreflect.scenes.scene import Scene
+from interreflect.scenes.unwrap import unwrap
 
 
 def camera_of(scene: Scene, camera: Camera | str | None) -> Camera:
@@ -262,6 +263,80 @@ def shade_lights(
     filter_shadows: how shadows are looked up (None: SimpleLookup). share: which lights each pixel does itself (None: all)."""
     by = _core.SimpleLookup() if filter_shadows is None else filter_shadows
     return _core.light_pixels(technique, by, _core.EveryPixel() if share is None else share, lights, shadows, gbuffer, scene.core, seed)
+
+
+def place_surfels(technique: Any, scene: Scene) -> _core.Surfels:
+    """Disks that stand for the scene's still surface: `.position`, `.normal` (n, 3), `.area` (n,). Bodies have none.
+
+    They lie on the sides that see the front of something, where materials are two-sided on both; what is buried has none."""
+    return _core.open_sides(_core.place_surfels(technique, scene.core), scene.core)
+
+
+def cluster_surfels(technique: Any, surfels: _core.Surfels) -> _core.ClusteredSurfels:
+    """A binary tree over surfels in post-order; `.surfels` come back in the order of its leaves."""
+    return _core.cluster_surfels(technique, surfels)
+
+
+def place_caches(technique: Any, scene: Scene, gbuffer: _core.GBuffer | None = None) -> _core.CacheSites:
+    """Where caches of incident radiance stand: `.position`, `.normal` (n, 3). PixelCaches needs the picture: `gbuffer`."""
+    if isinstance(technique, _core.PixelCaches):
+        if gbuffer is None:
+            raise ValueError("PixelCaches needs the picture whose pixels it stands at: place_caches(..., gbuffer=...)")
+        return _core.pixel_sites(gbuffer)
+    if isinstance(technique, _core.LightMap):
+        return _core.place_caches(technique, scene.core, unwrap(scene, technique.texels, technique.area_share))
+    return _core.place_caches(technique, scene.core)
+
+
+def link(technique: Any, sites: _core.CacheSites, surfels: _core.ClusteredSurfels, scene: Scene) -> _core.CacheLinks | None:
+    """Which patches of surfels send light to each cache; None for AllSurfels, which stores nothing."""
+    return None if isinstance(technique, _core.AllSurfels) else _core.link(technique, sites, surfels, scene.core)
+
+
+def surfel_pixels(surfels: _core.ClusteredSurfels, scene: Scene) -> _core.GBuffer:
+    """Surfels as the pixels of a picture, row by row, for `shadow`, `sky` and `evaluate`."""
+    return _core.surfel_pixels(surfels, scene.core)
+
+
+def pull(surfels: _core.ClusteredSurfels, radiance: NDArray[np.float32], radiosity: bool = False) -> _core.NodeLight:
+    """What every patch of surfels sends on: the sum of flux, or the mean radiosity. radiance: (..., 3) of each surfel."""
+    return _core.pull(surfels, radiance, radiosity)
+
+
+def light_caches(
+    technique: Any,
+    links: _core.CacheLinks | None,
+    sites: _core.CacheSites,
+    surfels: _core.ClusteredSurfels,
+    light: _core.NodeLight,
+    scene: Scene,
+    chrominance_bands: int = 0,
+    seed: int = 0,
+) -> _core.LightCaches:
+    """Incident radiance of every cache, in spherical harmonics: the sum over its links, or for AllSurfels over surfels themselves."""
+    if links is None:
+        return _core.sample_caches(technique, sites, surfels, light, chrominance_bands, scene.core, seed)
+    return _core.light_caches(links, light, technique.bands, chrominance_bands)
+
+
+def evaluate(
+    technique: Any,
+    caches: _core.LightCaches | None,
+    sites: _core.CacheSites,
+    gbuffer: _core.GBuffer,
+    scene: Scene,
+    links: _core.CacheLinks | None = None,
+    light: _core.NodeLight | None = None,
+) -> _core.SurfelLight:
+    """What pixels get from caches: `.gathered.irradiance` and `.glossy.radiance`. DirectLinks takes, in place of the caches' light, the
+    links and what comes through them."""
+    if isinstance(technique, _core.DirectLinks):
+        if links is None or light is None:
+            raise ValueError("DirectLinks needs links that are stored, and what comes through them: evaluate(..., links=..., light=...)")
+        return _core.evaluate(technique, links, light, sites, gbuffer, scene.core)
+    if caches is None:
+        raise ValueError(f"{type(technique).__name__} needs the caches' light")
+    return _core.evaluate(technique, caches, sites, gbuffer, scene.core)
 
 
 def shade(gbuffer: _core.GBuffer, light: _core.GatheredLight, glossy: _core.GlossyLight | None = None) -> NDArray[np.float32]:

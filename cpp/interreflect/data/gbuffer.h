@@ -31,6 +31,7 @@ struct GBuffer {
     Buffer<std::uint32_t> instance;  // no_hit where nothing was hit
     Buffer<std::uint32_t> body;      // 0 is "world"
     std::optional<Lobe> lobe;        // of every glossy surface; empty: each has its material's (stage shade)
+    bool seen_head_on = false;       // every pixel along its own normal: surface points that no one camera sees
     Counts counts;
 
     std::size_t pixels() const { return static_cast<std::size_t>(width) * height; }

@@ -9,6 +9,7 @@ _HOMES = {
     "AmbientOcclusion": "ambient_occlusion",
     "ClusteredRadianceCaching": "clustered_radiance_caching",
     "ConstantAmbient": "constant_ambient",
+    "IlluminanceComposition": "illuminance_composition",
     "PathTracing": "path_tracing",
     "PathTracingDenoised": "path_tracing_denoised",
     "VirtualAreaLights": "virtual_area_lights",
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
     from interreflect.methods.ambient_occlusion import AmbientOcclusion as AmbientOcclusion
     from interreflect.methods.clustered_radiance_caching import ClusteredRadianceCaching as ClusteredRadianceCaching
     from interreflect.methods.constant_ambient import ConstantAmbient as ConstantAmbient
+    from interreflect.methods.illuminance_composition import IlluminanceComposition as IlluminanceComposition
     from interreflect.methods.path_tracing import PathTracing as PathTracing
     from interreflect.methods.path_tracing_denoised import PathTracingDenoised as PathTracingDenoised
     from interreflect.methods.virtual_area_lights import VirtualAreaLights as VirtualAreaLights

@@ -1,0 +1,116 @@
+"""The suite `surfels`: the stages of illuminance composition in the paper's two settings, on Sponza by its sun at 1920 x 1080.
+
+Lighting surfels takes the sun's shadow by rays, where the paper looks into a shadow map that it has; the note says so.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import Any
+
+import numpy as np
+
+import interreflect as ir
+from bench import limits, sponza
+from bench.calibration import TARGETS_MACHINE, Calibration, calibrate
+from bench.rows import Row, absent, within
+from bench.timing import least, timed
+from bench.voxel_pipeline import bounded, sunlit
+from interreflect import stages
+
+SIZE = (1920, 1080)
+REPEATS = 15
+MIB = 1 << 20
+
+
+@dataclasses.dataclass(frozen=True)
+class Setting:
+    """Bounds in ms; precomputation in s; memory in MiB, links projected and cones."""
+
+    name: str
+    surfels: float
+    pull: float
+    projected: float
+    cones: float
+    whole: float
+    precomputation: float
+    memory: tuple[float, float]
+
+
+SETTINGS = (
+    Setting("setting 1", 1.0, 0.2, 3.0, 6.0, 4.2, 120.0, (104.3, 42.8)),
+    Setting("setting 2", 0.3, 0.1, 0.6, 1.2, 1.0, 30.0, (32.5, 19.58)),
+)
+EVALUATION = 20.0
+
+
+def run(peers: Any) -> tuple[Calibration, list[Row]]:
+    """Calibrates, then measures every row. peers: the module `_peers`."""
+    measured_on = sponza.load(peers)
+    calibration = calibrate(measured_on)
+    if measured_on is None:
+        return calibration, [absent("illuminance composition", "as the stages' rows say", "Sponza is not here")]
+    scene = sunlit(measured_on.scene)
+    return calibration, [row for setting in SETTINGS for row in rows(calibration, setting, scene)]
+
+
+def rows(calibration: Calibration, setting: Setting, scene: ir.Scene) -> list[Row]:
+    way: Any = ir.methods.IlluminanceComposition.preset(setting.name).replace(bounces=1)
+    prepared = way.prepare(scene)
+    surfels, pixels, sites, links = (prepared.state[key] for key in ("surfels", "pixels", "sites", "links"))
+    cones_way = ir.RuntimeProjection(links=way.link.links, bands=way.link.bands, near_rays=0)
+    cones = stages.link(cones_way, sites, surfels, scene)
+    lit = np.asarray(ir.shadow(way.shadow, scene, pixels).radiance)
+    sent = stages.pull(surfels, lit)
+    caches = stages.light_caches(way.link, links, sites, surfels, sent, scene)
+    gbuffer = ir.trace_gbuffer(scene, "nave", SIZE)
+    times = least(
+        timed(lambda: ir.shadow(way.shadow, scene, pixels)), timed(lambda: stages.pull(surfels, lit)),
+        timed(lambda: stages.light_caches(way.link, links, sites, surfels, sent, scene)),
+        timed(lambda: stages.light_caches(cones_way, cones, sites, surfels, sent, scene)),
+        timed(lambda: stages.evaluate(way.evaluate, caches, sites, gbuffer, scene)), repeats=REPEATS,
+    )  # fmt: skip
+    lighting, pulling, projected, by_cones, evaluated = times
+    name, bands = setting.name, way.link.bands
+    told = f"{len(surfels)} surfels, {len(sites)} caches"
+    links_limit = lambda c: limits.move(c, links.bytes)  # noqa: E731
+    limit_of = {
+        "lighting": lambda c: limits.trace(c, "sun shadow", len(surfels)),
+        "pull": lambda c: limits.move(c, 2 * 12 * len(surfels.leaves)),
+        "cones": lambda c: cone_links(c, len(sites) * cones.per_cache, cones.bytes),
+        "evaluation": lambda c: limits.compute(c, 2.0 * SIZE[0] * SIZE[1] * 4 * 3 * bands**2),
+    }
+    of_links = f"{told}, {links.bytes / MIB:.1f} MiB of links; {1e6 * projected / len(sites):.0f} ns a cache"
+    found = [
+        bounded(f"surfel lighting by the sun: {name}", lighting, setting.surfels, limit_of["lighting"], calibration,
+                note=f"{told}; a ray each, no shadow map"),
+        bounded(f"pull: {name}", pulling, setting.pull, limit_of["pull"], calibration, note=told),
+        bounded(f"cache lighting, links in spherical harmonics: {name}", projected, setting.projected, links_limit, calibration,
+                note=of_links),
+        within(f"cache lighting within 1.2 of its limit: {name}", projected, links_limit(calibration), 1.2 * links_limit(calibration)),
+        bounded(f"cache lighting, run-time projection: {name}", by_cones, setting.cones, limit_of["cones"], calibration,
+                note=f"{cones.bytes / MIB:.1f} MiB of links"),
+        bounded(f"sum, links in spherical harmonics: {name}", lighting + pulling + projected, setting.whole, links_limit, calibration),
+        bounded(f"evaluation at 1920 x 1080: {name}", evaluated, EVALUATION, limit_of["evaluation"], calibration,
+                note="four caches a pixel"),
+        precomputation(calibration, setting, prepared.precompute_milliseconds / 1e3, told),
+    ]  # fmt: skip
+    held = surfels.bytes + sites.bytes + caches.bytes + sent.bytes
+    for kind, bytes_of, most in (("spherical harmonics", links.bytes, setting.memory[0]), ("cones", cones.bytes, setting.memory[1])):
+        found.append(memory(f"memory, links as {kind}: {setting.name}", (held + bytes_of) / MIB, most))
+    return found
+
+
+def cone_links(c: Calibration, count: int, bytes_of: int) -> float:
+    """Four bands: 48 multiply-adds and about as many operations more for a cone's direction and zonal polynomials."""
+    return max(limits.move(c, bytes_of), limits.compute(c, (2 * 48 + 50.0) * count))
+
+
+def precomputation(calibration: Calibration, setting: Setting, seconds: float, told: str) -> Row:
+    """Most of it is visibility: the bound grows as this machine's rays do."""
+    scale = TARGETS_MACHINE.best("occlusion") / calibration.best("occlusion")
+    return within(f"precomputation: {setting.name}", 1e3 * seconds, None, 1e3 * setting.precomputation, scale, note=told)
+
+
+def memory(name: str, mebibytes: float, most: float) -> Row:
+    return Row(name, None, None, None, None, f"at most {most:g} MiB", mebibytes <= most, note=f"{mebibytes:.1f} MiB")

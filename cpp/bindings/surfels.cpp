@@ -1,0 +1,275 @@
+/// Room surfels: place, cluster, sites of caches, link, light, evaluate.
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include "bindings/arrays.h"
+#include "bindings/rooms.h"
+#include "bindings/run.h"
+#include "bindings/technique.h"
+#include "surfels/cluster.h"
+#include "surfels/evaluate.h"
+#include "surfels/light_caches.h"
+#include "surfels/link.h"
+#include "surfels/open_sides.h"
+#include "surfels/place.h"
+#include "surfels/pull.h"
+#include "surfels/sites.h"
+#include "surfels/surfel_pixels.h"
+
+namespace interreflect::bindings {
+namespace {
+
+void bind_surfels_data(py::module_& m) {
+    py::class_<Surfels, std::shared_ptr<Surfels>>(m, "Surfels",
+                                                  "Disks that stand for a scene's still surface; n in parallel arrays.")
+        .def_property_readonly(
+            "position", [](const py::object& self) { return vectors(self.cast<const Surfels&>().position, self); },
+            "(n, 3): world space.")
+        .def_property_readonly(
+            "normal", [](const py::object& self) { return vectors(self.cast<const Surfels&>().normal, self); },
+            "(n, 3): unit, of the triangle's front.")
+        .def_property_readonly(
+            "area", [](const py::object& self) { return numbers(self.cast<const Surfels&>().area, self); },
+            "(n,): scene units squared.")
+        .def_property_readonly(
+            "triangle", [](const py::object& self) { return numbers(self.cast<const Surfels&>().triangle, self); },
+            "(n,): number over all triangles of the scene.")
+        .def_readonly("extent", &Surfels::extent, "Diagonal of the still surface's bounds, scene units.")
+        .def("__len__", &Surfels::size)
+        .def_property_readonly("bytes", &Surfels::bytes);
+    using Clustered = ClusteredSurfels;
+    py::class_<Clustered, std::shared_ptr<Clustered>>(
+        m, "ClusteredSurfels", "Surfels in the order of a binary tree's leaves, and the tree in post-order.")
+        .def_property_readonly(
+            "surfels", [](const std::shared_ptr<Clustered>& self) { return std::shared_ptr<Surfels>(self, &self->surfels); },
+            "In the order of the leaves.")
+        .def_property_readonly(
+            "leaves", [](const py::object& self) { return numbers(self.cast<const Clustered&>().tree.leaves, self); },
+            "(2n - 1,): surfels under each node; the right child of node i is i - 1, the left one i - 2 leaves[i - 1].")
+        .def_property_readonly(
+            "leaf_end", [](const py::object& self) { return numbers(self.cast<const Clustered&>().tree.leaf_end, self); },
+            "(2n - 1,): the node's surfels are [leaf_end - leaves, leaf_end).")
+        .def_property_readonly(
+            "node", [](const py::object& self) { return numbers(self.cast<const Clustered&>().tree.node, self); },
+            "(n,): of each surfel.")
+        .def_property_readonly(
+            "area", [](const py::object& self) { return numbers(self.cast<const Clustered&>().tree.area, self); },
+            "(2n - 1,): of each node's surfels, scene units squared.")
+        .def_property_readonly(
+            "inversions", [](const Clustered& self) { return self.tree.inversions; },
+            "Merges nearer than one of those that they build on.")
+        .def("__len__", [](const Clustered& self) { return self.surfels.size(); })
+        .def_property_readonly("bytes", &Clustered::bytes);
+    py::class_<NodeLight, std::shared_ptr<NodeLight>>(m, "NodeLight", "What every node of a tree of surfels sends on.")
+        .def_property_readonly(
+            "value", [](const py::object& self) { return vectors(self.cast<const NodeLight&>().value, self); },
+            "(2n - 1, 3): flux, W, or radiosity, W/m^2.")
+        .def_readonly("radiosity", &NodeLight::radiosity)
+        .def_property_readonly("bytes", &NodeLight::bytes);
+}
+
+void bind_sites(py::module_& m) {
+    py::class_<CacheSites, std::shared_ptr<CacheSites>>(m, "CacheSites", "Where caches of incident radiance stand.")
+        .def_property_readonly(
+            "position", [](const py::object& self) { return vectors(self.cast<const CacheSites&>().position, self); },
+            "(n, 3): world space.")
+        .def_property_readonly(
+            "normal", [](const py::object& self) { return vectors(self.cast<const CacheSites&>().normal, self); },
+            "(n, 3): unit, or (0, 0, 0) where light may come from everywhere.")
+        .def("__len__", &CacheSites::size)
+        .def_readonly("counts", &CacheSites::counts)
+        .def_property_readonly("bytes", &CacheSites::bytes);
+}
+
+void bind_links(py::module_& m) {
+    py::class_<CacheLinks, std::shared_ptr<CacheLinks>>(m, "CacheLinks", "Which patches of surfels send light to each cache.")
+        .def_readonly("per_cache", &CacheLinks::per_cache)
+        .def_readonly("radiosity", &CacheLinks::radiosity, "Whether they take the nodes' radiosity in place of flux.")
+        .def_property_readonly(
+            "node",
+            [](const CacheLinks& self) {
+                const bool cones = self.kind == CacheLinks::Kind::cones;
+                py::array_t<std::uint32_t> nodes(
+                    {static_cast<py::ssize_t>(self.caches), static_cast<py::ssize_t>(self.per_cache)});
+                for (std::size_t i = 0; i < static_cast<std::size_t>(nodes.size()); ++i)
+                    nodes.mutable_data()[i] = cones ? self.cones[i].node : self.node[i];
+                return nodes;
+            },
+            "(caches, links): node of the tree; a copy.")
+        .def_readonly("counts", &CacheLinks::counts)
+        .def_property_readonly("bytes", &CacheLinks::bytes);
+    py::class_<LightCaches, std::shared_ptr<LightCaches>>(m, "LightCaches", "Incident radiance in spherical harmonics.")
+        .def_readonly("bands", &LightCaches::bands)
+        .def_readonly("chrominance_bands", &LightCaches::chrominance_bands)
+        .def_property_readonly(
+            "coefficients",
+            [](const py::object& self) {
+                const auto& caches = self.cast<const LightCaches&>();
+                return view(caches.coefficients.data(),
+                            {static_cast<py::ssize_t>(caches.caches), static_cast<py::ssize_t>(caches.stride())}, self);
+            },
+            "(caches, bands^2 + 2 chrominance_bands^2): of red, green and blue, or where chrominance has fewer bands of Y, Co "
+            "and Cg.")
+        .def_readonly("counts", &LightCaches::counts)
+        .def_property_readonly("bytes", &LightCaches::bytes);
+    py::class_<SurfelLight, std::shared_ptr<SurfelLight>>(m, "SurfelLight", "What pixels get from caches of surfels' light.")
+        .def_property_readonly(
+            "gathered",
+            [](const std::shared_ptr<SurfelLight>& self) { return std::shared_ptr<GatheredLight>(self, &self->gathered); },
+            "What arrives over the hemisphere: irradiance alone.")
+        .def_property_readonly(
+            "glossy", [](const std::shared_ptr<SurfelLight>& self) { return std::shared_ptr<GlossyLight>(self, &self->glossy); },
+            "What the glossy lobe reflects: radiance alone.")
+        .def_readonly("counts", &SurfelLight::counts)
+        .def_property_readonly("bytes", &SurfelLight::bytes);
+}
+
+void bind_stages(py::module_& m) {
+    bind_stage(m, "place_surfels", "Which disks stand for the still surface.", false, static_cast<const PlaceSurfels*>(nullptr));
+    bind_stage(m, "cluster_surfels", "Which surfels send light on as one.", false, static_cast<const ClusterSurfels*>(nullptr));
+    bind_stage(m, "place_caches", "Where caches of incident radiance stand.", true, static_cast<const PlaceCaches*>(nullptr));
+    bind_stage(m, "link", "Which patches of surfels send light to each cache.", true, static_cast<const Link*>(nullptr));
+    bind_stage(m, "evaluate", "What pixels get from caches of incident radiance.", true, static_cast<const Evaluate*>(nullptr));
+}
+
+void bind_precomputation(py::module_& m) {
+    m.def(
+        "place_surfels",
+        [](const PlaceSurfels& technique, const BoundScene& s) {
+            return run([&] {
+                return std::make_shared<Surfels>(
+                    std::visit([&](const auto& one) { return place_surfels(one, s.scene, *s.intersector); }, technique));
+            });
+        },
+        py::arg("technique"), py::arg("scene"), "Disks that stand for the still surface.");
+    m.def(
+        "open_sides",
+        [](const Surfels& fronts, const BoundScene& s) {
+            return run([&] { return std::make_shared<Surfels>(open_sides(fronts, s.scene, *s.intersector)); });
+        },
+        py::arg("fronts"), py::arg("scene"),
+        "Those surfels whose side sees the front of something; on two-sided materials on both sides.");
+    m.def(
+        "cluster_surfels",
+        [](const ClusterSurfels& technique, const Surfels& surfels) {
+            return run([&] {
+                return std::make_shared<ClusteredSurfels>(
+                    std::visit([&](const auto& one) { return cluster_surfels(one, surfels); }, technique));
+            });
+        },
+        py::arg("technique"), py::arg("surfels"), "A tree over surfels, and the surfels in the order of its leaves.");
+    m.def(
+        "surfel_pixels",
+        [](const ClusteredSurfels& surfels, const BoundScene& s) {
+            return run([&] { return std::make_shared<GBuffer>(surfel_pixels(surfels.surfels, s.scene)); });
+        },
+        py::arg("surfels"), py::arg("scene"), "Surfels as the pixels of a picture, row by row.");
+    m.def(
+        "place_caches",
+        [](const CacheGrid& technique, const BoundScene& s) {
+            return run([&] { return std::make_shared<CacheSites>(place_caches(technique, s.scene, *s.intersector)); });
+        },
+        py::arg("technique"), py::arg("scene"), "Caches in a box about the scene.");
+    m.def(
+        "place_caches",
+        [](const LightMap& technique, const BoundScene& s, const py::object& texcoord) {
+            const auto corners = rows<vec2, float>(texcoord, "texcoord");
+            return run([&] { return std::make_shared<CacheSites>(place_caches(technique, s.scene, *s.intersector, corners)); });
+        },
+        py::arg("technique"), py::arg("scene"), py::arg("texcoord"),
+        "Caches in the texels of a map, and in a box. texcoord: (3 triangles, 2) float32, of every corner, in texels; negative: "
+        "the triangle has no chart.");
+    m.def(
+        "still_triangles",
+        [](const BoundScene& s) {
+            const auto& arrays = *s.scene.geometry->arrays;
+            const Group& still = s.scene.geometry->groups.front();
+            py::array_t<float> corners({static_cast<py::ssize_t>(still.triangle_count), py::ssize_t{3}, py::ssize_t{3}});
+            for (std::size_t t = 0; t < still.triangle_count; ++t)
+                for (int corner = 0; corner < 3; ++corner)
+                    for (int k = 0; k < 3; ++k)
+                        corners.mutable_at(t, corner, k) = arrays.positions[arrays.triangles[t][corner]][k];
+            return py::make_tuple(corners, arrays.triangles.size());
+        },
+        py::arg("scene"),
+        "(n, 3, 3) float32: corners of what does not move, world space, a copy; these are the scene's first n triangles. And how "
+        "many it has in all.");
+    m.def(
+        "pixel_sites",
+        [](const GBuffer& gbuffer) { return run([&] { return std::make_shared<CacheSites>(pixel_sites(gbuffer)); }); },
+        py::arg("gbuffer"), "A cache for every pixel that sees a surface.");
+    const auto bind_link = [&m]<class Technique>(const Technique*) {
+        m.def(
+            "link",
+            [](const Technique& technique, const CacheSites& sites, const ClusteredSurfels& surfels, const BoundScene& s) {
+                return run(
+                    [&] { return std::make_shared<CacheLinks>(link(technique, sites, surfels, s.scene, *s.intersector)); });
+            },
+            py::arg("technique"), py::arg("sites"), py::arg("surfels"), py::arg("scene"),
+            "Which patches of surfels send light to each cache.");
+    };
+    bind_link(static_cast<const ShLinks*>(nullptr));
+    bind_link(static_cast<const RuntimeProjection*>(nullptr));
+}
+
+void bind_run_time(py::module_& m) {
+    m.def(
+        "pull",
+        [](const ClusteredSurfels& surfels, const py::object& radiance, bool radiosity) {
+            const auto array = exact_array<float>(radiance, "radiance");
+            if (array.ndim() < 1 || array.shape(array.ndim() - 1) != 3)
+                throw py::value_error("radiance must have shape (..., 3)");
+            const std::span<const vec3> values(reinterpret_cast<const vec3*>(array.data()),
+                                               static_cast<std::size_t>(array.size()) / 3);
+            return run([&] { return std::make_shared<NodeLight>(pull(surfels.tree, values, radiosity)); });
+        },
+        py::arg("surfels"), py::arg("radiance"), py::arg("radiosity") = false,
+        "The sum of the surfels' flux under every node, or the mean of their radiosity.");
+    m.def(
+        "light_caches",
+        [](const CacheLinks& links, const NodeLight& light, int bands, int chrominance_bands) {
+            return run([&] { return std::make_shared<LightCaches>(light_caches(links, light, {bands, chrominance_bands})); });
+        },
+        py::arg("links"), py::arg("light"), py::arg("bands"), py::arg("chrominance_bands") = 0,
+        "The sum over each cache's links.");
+    m.def(
+        "sample_caches",
+        [](const AllSurfels& technique, const CacheSites& sites, const ClusteredSurfels& surfels, const NodeLight& light,
+           int chrominance_bands, const BoundScene& s, std::uint32_t seed) {
+            return run([&] {
+                return std::make_shared<LightCaches>(light_caches(
+                    technique, sites, surfels, light, {technique.bands, chrominance_bands}, s.scene, *s.intersector, seed));
+            });
+        },
+        py::arg("technique"), py::arg("sites"), py::arg("surfels"), py::arg("light"), py::arg("chrominance_bands"),
+        py::arg("scene"), py::arg("seed") = 0, "Rays from every cache to surfels themselves.");
+    m.def(
+        "evaluate",
+        [](const SphericalHarmonicLobes& technique, const LightCaches& caches, const CacheSites& sites, const GBuffer& gbuffer,
+           const BoundScene& s) {
+            return run([&] { return std::make_shared<SurfelLight>(evaluate(technique, caches, sites, gbuffer, s.scene)); });
+        },
+        py::arg("technique"), py::arg("caches"), py::arg("sites"), py::arg("gbuffer"), py::arg("scene"),
+        "What pixels get from caches.");
+    m.def(
+        "evaluate",
+        [](const DirectLinks& technique, const CacheLinks& links, const NodeLight& light, const CacheSites& sites,
+           const GBuffer& gbuffer, const BoundScene& s) {
+            return run([&] { return std::make_shared<SurfelLight>(evaluate(technique, links, light, sites, gbuffer, s.scene)); });
+        },
+        py::arg("technique"), py::arg("links"), py::arg("light"), py::arg("sites"), py::arg("gbuffer"), py::arg("scene"),
+        "What pixels get from the links of caches.");
+}
+
+}  // namespace
+
+void bind_surfels(py::module_& m) {
+    bind_surfels_data(m);
+    bind_sites(m);
+    bind_links(m);
+    bind_stages(m);
+    bind_precomputation(m);
+    bind_run_time(m);
+}
+
+}  // namespace interreflect::bindings

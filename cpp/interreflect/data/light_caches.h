@@ -1,0 +1,90 @@
+/// Caches of incident radiance in spherical harmonics: where they stand, what they are linked to, and the light in them.
+#pragma once
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "data/buffer.h"
+#include "data/counts.h"
+#include "data/geometry.h"
+#include "math/vectors.h"
+
+namespace interreflect {
+
+inline constexpr std::uint32_t no_cache = std::numeric_limits<std::uint32_t>::max();
+inline constexpr int most_bands = 8;
+
+/// Texels of a square map over the still surface that have caches.
+struct LightMapSites {
+    int size = 0;                 // texels on a side; 0: there is no map
+    Buffer<std::uint32_t> cache;  // of every texel, row by row from v = 0; no_cache where none lies near
+    Buffer<vec2> texcoord;        // of every corner of every triangle, in texels; negative: the triangle has no chart
+};
+/// A box of caches, x fastest.
+struct GridSites {
+    ivec3 size{0};  // caches along each axis; 0: there is no grid
+    Bounds box{};
+    Buffer<std::uint32_t> cache;    // of every cell; no_cache inside of solids
+    Buffer<std::uint32_t> nearest;  // of every cell: its own, or that of the nearest cell that has one, by steps between cells
+};
+
+struct CacheSites {
+    Buffer<vec3> position;  // world space
+    Buffer<vec3> normal;    // unit: light comes over that hemisphere; (0, 0, 0): from everywhere
+    Buffer<float> offset;   // how far off the surface rays start, scene units
+    LightMapSites map;
+    GridSites grid;
+    bool pixels = false;  // one for every pixel that sees a surface, in order
+    Counts counts;
+
+    std::size_t size() const { return position.size(); }
+    std::size_t bytes() const {
+        return position.bytes() + normal.bytes() + offset.bytes() + map.cache.bytes() + map.texcoord.bytes() +
+               grid.cache.bytes() + grid.nearest.bytes();
+    }
+};
+
+/// One light path to a cache in 12 bytes.
+struct ConeLink {
+    std::uint32_t node;
+    std::uint16_t factor;        // half float: 1 / (pi area), over the unit of the links
+    std::uint16_t one_less_cos;  // half float: 1 - cosine of the half angle
+    std::uint16_t x, y;          // octahedral direction from the cache, over the unit square
+};
+static_assert(sizeof(ConeLink) == 12);
+
+/// Which nodes of the tree send light to each cache: `per_cache` of them, one cache after the other; places without one have
+/// coefficients 0.
+struct CacheLinks {
+    enum class Kind { projected, cones };
+    Kind kind = Kind::projected;
+    int per_cache = 0;
+    int bands = 0;           // of the projected coefficients; 0: of cones
+    bool radiosity = false;  // what the nodes' light must be: flux, or radiosity
+    float unit = 1.0f;       // what coefficients are multiples of, 1 / scene units squared
+    std::size_t caches = 0;
+    Buffer<std::uint32_t> node;          // projected: of every link
+    Buffer<std::uint16_t> coefficients;  // projected: bands^2 half floats a link, (1/pi) integral of V y over the area
+    Buffer<ConeLink> cones;
+    std::uint64_t nodes = 0;  // of the tree that they point into
+    Counts counts;
+
+    std::size_t bytes() const { return node.bytes() + coefficients.bytes() + cones.bytes(); }
+};
+
+/// Incident radiance of every cache: coefficients of luma (or red), then of both chrominances (or green and blue), cache by
+/// cache.
+struct LightCaches {
+    int bands = 0, chrominance_bands = 0;
+    bool ycocg = false;
+    std::size_t caches = 0;
+    Buffer<float> coefficients;
+    Counts counts;
+
+    int luma() const { return bands * bands; }
+    int chrominance() const { return chrominance_bands * chrominance_bands; }
+    int stride() const { return luma() + 2 * chrominance(); }
+    std::size_t bytes() const { return coefficients.bytes(); }
+};
+
+}  // namespace interreflect

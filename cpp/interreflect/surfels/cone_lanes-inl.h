@@ -1,0 +1,116 @@
+// Cones projected to spherical harmonics, a cone a lane. Included once for every vector target.
+#if defined(INTERREFLECT_CONE_LANES) == defined(HWY_TARGET_TOGGLE)
+#ifdef INTERREFLECT_CONE_LANES
+#undef INTERREFLECT_CONE_LANES
+#else
+#define INTERREFLECT_CONE_LANES
+#endif
+
+#include "data/light_caches.h"
+#include "data/surfels.h"
+#include "math/lanes-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace interreflect {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// octahedral_direction of places in the unit square, as 16 bits each.
+HWY_INLINE Vec3 octahedral_lanes(Vector x, Vector z) {
+    const Tag d;
+    const Vector one = hn::Set(d, 1.0f), scale = hn::Set(d, 2.0f / 65535.0f);
+    x = hn::MulSub(x, scale, one), z = hn::MulSub(z, scale, one);
+    const Vector ax = hn::Abs(x), az = hn::Abs(z), y = hn::Sub(hn::Sub(one, ax), az);
+    const auto below = hn::Lt(y, hn::Zero(d));
+    const Vec3 folded{hn::IfThenElse(below, hn::CopySign(hn::Sub(one, az), x), x), y,
+                      hn::IfThenElse(below, hn::CopySign(hn::Sub(one, ax), z), z)};
+    return scaled(folded, hn::Div(one, hn::Sqrt(dot(folded, folded))));
+}
+
+/// zonal_cone of band l (math/spherical_harmonics.h): x is 1 - cosine, c2 and s2 cosine and sine squared.
+template <int l>
+HWY_INLINE Vector zonal_lanes(Vector x, Vector c, Vector c2, Vector s2) {
+    const Tag d;
+    const auto n = [&](float value) { return hn::Set(d, value); };
+    if constexpr (l == 0) return hn::Mul(x, n(2.0f * pi));
+    if constexpr (l == 1) return hn::Mul(s2, n(pi));
+    if constexpr (l == 2) return hn::Mul(hn::Mul(s2, c), n(pi));
+    if constexpr (l == 3) return hn::Mul(hn::Mul(s2, n(pi / 4.0f)), hn::MulSub(c2, n(5.0f), n(1.0f)));
+    if constexpr (l == 4) return hn::Mul(hn::Mul(hn::Mul(s2, c), n(pi / 4.0f)), hn::MulSub(c2, n(7.0f), n(3.0f)));
+    if constexpr (l == 5) return hn::Mul(hn::Mul(s2, n(pi / 8.0f)), hn::MulAdd(hn::MulSub(c2, n(21.0f), n(14.0f)), c2, n(1.0f)));
+    if constexpr (l == 6)
+        return hn::Mul(hn::Mul(hn::Mul(s2, c), n(pi / 8.0f)), hn::MulAdd(hn::MulSub(c2, n(33.0f), n(30.0f)), c2, n(5.0f)));
+    if constexpr (l == 7)
+        return hn::Mul(hn::Mul(s2, n(pi / 64.0f)),
+                       hn::MulSub(hn::MulAdd(hn::MulSub(c2, n(429.0f), n(495.0f)), c2, n(135.0f)), c2, n(5.0f)));
+}
+
+/// One cone a lane: where from, its zonal coefficients, and what it brings.
+template <int bands>
+struct ConeLanes {
+    Vec3 direction, light;
+    Vector zonal[bands];
+};
+
+/// Links [first, first + count) of the list; lanes beyond bring nothing.
+template <int bands>
+HWY_INLINE ConeLanes<bands> load_cones(const CacheLinks& links, const NodeLight& light, std::size_t first, std::size_t count) {
+    const Tag d;
+    constexpr std::size_t lanes = hn::MaxLanes(d);
+    alignas(64) float sent[3][lanes] = {}, x[lanes] = {}, z[lanes] = {};
+    alignas(64) std::uint16_t factor[lanes] = {}, narrow[lanes] = {};
+    for (std::size_t k = 0; k < count; ++k) {
+        const ConeLink& link = links.cones[first + k];
+        const vec3& value = light.value[link.node];
+        sent[0][k] = value.x, sent[1][k] = value.y, sent[2][k] = value.z;
+        x[k] = link.x, z[k] = link.y;
+        factor[k] = link.factor, narrow[k] = link.one_less_cos;
+    }
+    const hn::Rebind<hwy::float16_t, Tag> half;
+    const auto promoted = [&](const std::uint16_t* bits) {
+        return hn::PromoteTo(d, hn::Load(half, reinterpret_cast<const hwy::float16_t*>(bits)));
+    };
+    const Vector f = promoted(factor), s = promoted(narrow), c = hn::Sub(hn::Set(d, 1.0f), s);
+    const Vector c2 = hn::Mul(c, c), s2 = hn::Mul(s, hn::Sub(hn::Set(d, 2.0f), s));
+    ConeLanes<bands> cones;
+    cones.direction = octahedral_lanes(hn::Load(d, x), hn::Load(d, z));
+    cones.light = scaled({hn::Load(d, sent[0]), hn::Load(d, sent[1]), hn::Load(d, sent[2])}, f);
+    [&]<int... l>(std::integer_sequence<int, l...>) { ((cones.zonal[l] = zonal_lanes<l>(s, c, c2, s2)), ...); }
+    (std::make_integer_sequence<int, bands>());
+    return cones;
+}
+
+/// Adds the cones' projections to the coefficients' sums, a lane each, but for harmonic_norms.
+template <int bands>
+HWY_INLINE void add_cones(const ConeLanes<bands>& cones, Vector (*sum)[bands * bands]) {
+    const Tag d;
+    const auto add = [&](int i, Vector value) {
+        sum[0][i] = hn::MulAdd(value, cones.light.x, sum[0][i]);
+        sum[1][i] = hn::MulAdd(value, cones.light.y, sum[1][i]);
+        sum[2][i] = hn::MulAdd(value, cones.light.z, sum[2][i]);
+    };
+    Vector cosine = hn::Set(d, 1.0f), sine = hn::Zero(d);
+    float diagonal = 1.0f;
+    for (int m = 0; m < bands; ++m) {
+        Vector before = hn::Zero(d), now = hn::Set(d, diagonal);
+        for (int l = m; l < bands; ++l) {
+            const Vector value = hn::Mul(now, cones.zonal[l]);
+            add(l * l + l + m, hn::Mul(value, cosine));
+            if (m > 0) add(l * l + l - m, hn::Mul(value, sine));
+            const float rest = 1.0f / static_cast<float>(l + 1 - m);
+            const Vector next = hn::MulSub(hn::Mul(cones.direction.z, hn::Set(d, static_cast<float>(2 * l + 1) * rest)), now,
+                                           hn::Mul(before, hn::Set(d, static_cast<float>(l + m) * rest)));
+            before = now, now = next;
+        }
+        diagonal *= static_cast<float>(2 * m + 1);
+        const Vector turned = hn::MulSub(cones.direction.x, cosine, hn::Mul(cones.direction.y, sine));
+        sine = hn::MulAdd(cones.direction.x, sine, hn::Mul(cones.direction.y, cosine));
+        cosine = turned;
+    }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace interreflect
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,101 @@
+#include "surfels/evaluate/direct_links.h"
+
+#include <cmath>
+#include <stdexcept>
+#include <vector>
+
+#include "direct/pixel_surface.h"
+#include "math/half.h"
+#include "math/octahedral_map.h"
+#include "math/parallel.h"
+#include "math/spherical_harmonics.h"
+#include "shading/brdf.h"
+#include "surfels/evaluate/cache_finder.h"
+#include "surfels/light_caches.h"
+
+namespace interreflect {
+namespace {
+
+constexpr int tile_size = 16;  // pixels
+
+/// What a link brings: radiance times solid angle, from one direction.
+struct Beam {
+    vec3 direction{0}, light{0};
+};
+
+Beam beam_of(const ConeLink& link, const CacheLinks& links, const NodeLight& light) {
+    const float scale = from_half(link.factor) * zonal_cone(0, from_half(link.one_less_cos)) * links.unit;
+    return {octahedral_direction({static_cast<float>(link.x) / 65535.0f, static_cast<float>(link.y) / 65535.0f}),
+            light.value[link.node] * scale};
+}
+
+/// The first coefficient is the solid angle's times y_0; the next three point along the mean direction.
+Beam beam_of(std::size_t link, const CacheLinks& links, const NodeLight& light) {
+    const std::uint16_t* c = links.coefficients.data() + link * static_cast<std::size_t>(links.bands * links.bands);
+    const vec3 towards(from_half(c[3]), from_half(c[1]), from_half(c[2]));
+    const float length = glm::length(towards), constant = 0.5f / std::sqrt(pi);
+    if (!(length > 0.0f)) return {};
+    return {towards / length, light.value[links.node[link]] * (from_half(c[0]) / constant * links.unit)};
+}
+
+void check(const CacheLinks& links, const NodeLight& light, const CacheSites& sites) {
+    check_links(links, light);
+    if (links.caches != sites.size()) throw std::invalid_argument("DirectLinks: links of another number of caches");
+    if (links.kind == CacheLinks::Kind::projected && links.bands < 2)
+        throw std::invalid_argument("DirectLinks: links of one band do not tell their direction");
+}
+
+/// Sums of a pixel's irradiance and of what its lobe reflects.
+struct Reflected {
+    vec3 irradiance{0}, glossy{0};
+
+    void add(const PixelSurface& surface, const Beam& beam, float weight) {
+        const float cosine = glm::dot(surface.point.normal, beam.direction);
+        if (!(cosine > 0.0f)) return;
+        irradiance += beam.light * (weight * cosine);
+        if (!surface.glossy()) return;
+        SurfacePoint lobe = surface.point;
+        lobe.albedo = vec3(0);
+        glossy += evaluate_brdf(lobe, surface.to_viewer, beam.direction) * beam.light * (weight * cosine);
+    }
+};
+
+}  // namespace
+
+SurfelLight evaluate(const DirectLinks&, const CacheLinks& links, const NodeLight& light, const CacheSites& sites,
+                     const GBuffer& gbuffer, const Scene& scene) {
+    check(links, light, sites);
+    SurfelLight made = empty_surfel_light(gbuffer);
+    const CacheFinder finder(sites, gbuffer, scene);
+    const auto per_cache = static_cast<std::size_t>(links.per_cache);
+    std::vector<Counts> counts(tile_count(gbuffer.width, gbuffer.height, tile_size));
+    parallel_tiles(gbuffer.width, gbuffer.height, tile_size, [&](const Tile& tile) {
+        for (int y = tile.y0; y < tile.y1; ++y)
+            for (int x = tile.x0; x < tile.x1; ++x) {
+                const std::size_t pixel =
+                    static_cast<std::size_t>(y) * static_cast<std::size_t>(gbuffer.width) + static_cast<std::size_t>(x);
+                Reflected sum;
+                if (gbuffer.hit(pixel)) {
+                    const PixelSurface surface(gbuffer, scene, pixel);
+                    const NearCaches near = finder.find(pixel);
+                    for (int k = 0; k < near.count; ++k) {
+                        const std::size_t first = near.cache[static_cast<std::size_t>(k)] * per_cache;
+                        for (std::size_t i = first; i < first + per_cache; ++i)
+                            sum.add(surface,
+                                    links.kind == CacheLinks::Kind::cones ? beam_of(links.cones[i], links, light)
+                                                                          : beam_of(i, links, light),
+                                    near.weight[static_cast<std::size_t>(k)]);
+                    }
+                    Counts& mine = counts[tile.index];
+                    mine.links += static_cast<std::uint64_t>(near.count) * per_cache;
+                    ++(near.count > 0 ? mine.covered_pixels : mine.uncovered_pixels);
+                }
+                made.gathered.irradiance[pixel] = sum.irradiance;
+                made.glossy.radiance[pixel] = sum.glossy;
+            }
+    });
+    for (const Counts& one : counts) made.counts += one;
+    return made;
+}
+
+}  // namespace interreflect

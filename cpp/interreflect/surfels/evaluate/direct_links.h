@@ -1,0 +1,23 @@
+#pragma once
+#include "data/gbuffer.h"
+#include "data/light_caches.h"
+#include "data/scene.h"
+#include "data/surfels.h"
+#include "data/technique.h"
+#include "surfels/evaluate/surfel_light.h"
+
+namespace interreflect {
+
+/// Each link of the caches about a pixel sends its light along its mean direction, and the pixel's surface reflects it by its own
+/// BRDF: no spherical harmonics, but that projected links tell their direction by their first four coefficients.
+struct DirectLinks {
+    bool operator==(const DirectLinks&) const = default;
+    static constexpr auto description = describe("DirectLinks", "The BRDF itself over all links of the caches about a pixel.",
+                                                 Source{"Jendersie et al. 2016", "3.1, before the projection"});
+};
+
+/// std::invalid_argument where links and light do not belong together, or where projected links have one band.
+SurfelLight evaluate(const DirectLinks& technique, const CacheLinks& links, const NodeLight& light, const CacheSites& sites,
+                     const GBuffer& gbuffer, const Scene& scene);
+
+}  // namespace interreflect

@@ -1,0 +1,72 @@
+#include "surfels/light_caches.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
+#include "math/parallel.h"
+#include "surfels/light_kernel.h"
+
+namespace interreflect {
+namespace {
+
+constexpr std::size_t caches_a_block = 64;
+
+}  // namespace
+
+void check_links(const CacheLinks& links, const NodeLight& light) {
+    if (links.nodes != light.value.size())
+        throw std::invalid_argument("links into a tree of " + std::to_string(links.nodes) + " nodes, light of " +
+                                    std::to_string(light.value.size()));
+    if (links.radiosity != light.radiosity)
+        throw std::invalid_argument(links.radiosity ? "these links take radiosity, not flux"
+                                                    : "these links take flux, not radiosity");
+}
+
+LightCaches make_light_caches(std::size_t caches, const CacheFormat& format) {
+    const int chrominance = format.chrominance_bands == 0 ? format.bands : format.chrominance_bands;
+    if (format.bands < 1 || format.bands > most_bands)
+        throw std::invalid_argument("bands must lie in [1, 8], got " + std::to_string(format.bands));
+    if (chrominance < 1 || chrominance > format.bands)
+        throw std::invalid_argument("chrominance_bands must lie in [0, " + std::to_string(format.bands) + "], got " +
+                                    std::to_string(format.chrominance_bands));
+    LightCaches made;
+    made.bands = format.bands, made.chrominance_bands = chrominance;
+    made.ycocg = chrominance < format.bands;
+    made.caches = caches;
+    made.coefficients = Buffer<float>(caches * static_cast<std::size_t>(made.stride()));
+    return made;
+}
+
+void store_cache(LightCaches& caches, std::size_t cache, const float* red, const float* green, const float* blue) {
+    const int luma = caches.luma(), chrominance = caches.chrominance();
+    float* first = caches.coefficients.data() + cache * static_cast<std::size_t>(caches.stride());
+    float *second = first + luma, *third = second + chrominance;
+    if (!caches.ycocg) {
+        std::copy_n(red, luma, first), std::copy_n(green, luma, second), std::copy_n(blue, luma, third);
+        return;
+    }
+    for (int k = 0; k < luma; ++k) first[k] = 0.25f * red[k] + 0.5f * green[k] + 0.25f * blue[k];
+    for (int k = 0; k < chrominance; ++k) {
+        second[k] = 0.5f * (red[k] - blue[k]);
+        third[k] = 0.5f * green[k] - 0.25f * (red[k] + blue[k]);
+    }
+}
+
+LightCaches light_caches(const CacheLinks& links, const NodeLight& light, const CacheFormat& format) {
+    LightCaches made = make_light_caches(links.caches, format);
+    check_links(links, light);
+    if (links.kind == CacheLinks::Kind::projected && links.bands < format.bands)
+        throw std::invalid_argument("light_caches: links of " + std::to_string(links.bands) + " bands for caches of " +
+                                    std::to_string(format.bands));
+    parallel_blocks(links.caches, caches_a_block, [&](std::size_t begin, std::size_t end) {
+        if (links.kind == CacheLinks::Kind::projected)
+            light_projected(links, light, begin, end, made);
+        else
+            light_cones(links, light, begin, end, made);
+    });
+    made.counts.links = links.caches * static_cast<std::uint64_t>(links.per_cache);
+    return made;
+}
+
+}  // namespace interreflect

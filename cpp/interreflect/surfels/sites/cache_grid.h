@@ -1,0 +1,30 @@
+#pragma once
+#include "data/light_caches.h"
+#include "data/scene.h"
+#include "data/technique.h"
+#include "visibility/intersector.h"
+
+namespace interreflect {
+
+/// Caches in the middles of the cells of a box about the scene, for light from everywhere [Jendersie et al. 2016, 4.4]. One that
+/// sees more backs of surfaces than `most_backs` of all it sees lies in a solid, or behind a wall, and is left out.
+struct CacheGrid {
+    int nx = 24;
+    int ny = 8;
+    int nz = 12;
+    double most_backs = 0.3;
+
+    bool operator==(const CacheGrid&) const = default;
+    static constexpr auto description = describe(
+        "CacheGrid", "Caches in the middles of the cells of a box about the scene.",
+        Source{"Jendersie et al. 2016", "4.4; back faces: 5.2"},
+        Param{"nx", &CacheGrid::nx, "cells along x", Unit::none, between(1, 1024)},
+        Param{"ny", &CacheGrid::ny, "cells along y", Unit::none, between(1, 1024)},
+        Param{"nz", &CacheGrid::nz, "cells along z", Unit::none, between(1, 1024)},
+        Param{"most_backs", &CacheGrid::most_backs,
+              "share of what a cache sees that may be backs of surfaces; 1: none is left out", Unit::none, between(0, 1)});
+};
+
+CacheSites place_caches(const CacheGrid& technique, const Scene& scene, const Intersector& intersector);
+
+}  // namespace interreflect
