@@ -1,7 +1,7 @@
 """`./run figures [name ...]`: runs what is missing of an experiment's records and draws its chart from them.
 
 A name is a question (a file of this folder with one `study` and one `chart(records)`, or a `measure(folder)` whose findings its chart
-draws), a paper (`freed`, `rehfeld`, `weinzierl-heigl`: a folder, all of its
+draws), a paper (`freed`, `jendersie`, `rehfeld`, `weinzierl-heigl`: a folder, all of its
 files), one file of it (`freed/table_5_1`: `studies()` and `chart(*records)`), or `ledger`. Without a name: every question.
 Pictures go to results/figures. What needs a scene that is not here is left out and said so.
 """
@@ -18,7 +18,7 @@ import interreflect as ir
 from experiments.shared.keep import FOLDER, records_of
 
 HERE = Path(__file__).parent
-PAPERS = ("freed", "rehfeld", "weinzierl-heigl")
+PAPERS = ("freed", "jendersie", "rehfeld", "weinzierl-heigl")
 LEDGER = "ledger"
 
 

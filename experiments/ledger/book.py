@@ -6,14 +6,14 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import interreflect as ir
-from experiments.ledger import freed, rehfeld, rehfeld_caches, untested, weinzierl_heigl
+from experiments.ledger import freed, jendersie, rehfeld, rehfeld_caches, weinzierl_heigl
 from experiments.ledger.claim import NOT_YET, Claim, Verdict, judge
 from experiments.shared.keep import FOLDER, records_of
 
 CLAIMS: tuple[Claim, ...] = (
     *freed.CLAIMS,
     *sorted((*rehfeld.CLAIMS, *rehfeld_caches.CLAIMS), key=lambda claim: int(claim.name[1:])),
-    *untested.CLAIMS,
+    *jendersie.CLAIMS,
     *weinzierl_heigl.CLAIMS,
 )
 NOTES = (

@@ -5,6 +5,9 @@ from __future__ import annotations
 from functools import cache
 
 import interreflect as ir
+from interreflect.scenes.files import Folder
+from interreflect.scenes.images import read_radiance
+from interreflect.scenes.load import find
 
 
 @cache
@@ -30,8 +33,16 @@ def veach_ajar() -> ir.Scene:
 
 def sunny_sponza() -> ir.Scene:
     """Sponza without its sky: for what is about the voxels that a lamp hits."""
-    scene = sponza()
+    return without_sky(sponza())
+
+
+def without_sky(scene: ir.Scene) -> ir.Scene:
     return scene.replace(lights=[light for light in scene.lights if not isinstance(light, ir.EnvironmentLight)])
+
+
+def sunny_phong_sponza() -> ir.Scene:
+    """Sponza with the Phong lobe of Jendersie et al. on every surface, in the sun alone."""
+    return without_sky(load("sponza_crytek/phong30.toml"))
 
 
 def glossy_sponza() -> ir.Scene:
@@ -43,3 +54,10 @@ def phong_sponza(exponent: float) -> ir.Scene:
     """Sponza with the same Phong lobe on every surface, as Rehfeld et al. have on theirs."""
     lobe = {"specular": (0.2, 0.2, 0.2), "lobe": "phong", "exponent": exponent}
     return sponza().replace(materials={"*": lobe})
+
+
+def car_in_a_hall() -> ir.Scene:
+    """A car, a body of its own, on its ground under the environment of a hall."""
+    scene, path = load("bmw_m6/scene.toml"), find("envmaps/interior.exr")
+    hall = ir.EnvironmentLight(image=read_radiance(path, Folder.of(path)))
+    return scene.replace(lights=[hall], name="car in a hall")

@@ -56,9 +56,14 @@ def _picture(
         return np.array(background, np.float32)
     if cluster is None:
         return np.zeros((*shape, 3), np.float32)
-    hues = [colorsys.hsv_to_rgb(i * _GOLDEN % 1, 0.65, 0.55 + 0.45 * (i * _GOLDEN**2 % 1)) for i in range(count)]
-    colours = np.array([*hues, (0.0, 0.0, 0.0)], np.float32)
+    colours = np.concatenate((number_colours(count), np.zeros((1, 3), np.float32)))
     return np.asarray(colours[np.where(cluster == _NONE, count, cluster)])
+
+
+def number_colours(count: int) -> NDArray[np.float32]:
+    """(count, 3) in [0, 1]: a colour for each number; those that follow each other differ most."""
+    hues = [colorsys.hsv_to_rgb(i * _GOLDEN % 1, 0.65, 0.55 + 0.45 * (i * _GOLDEN**2 % 1)) for i in range(count)]
+    return np.array(hues, np.float32).reshape(count, 3)
 
 
 def _draw_dots(picture: NDArray[np.float32], centres: NDArray[np.floating] | NDArray[np.integer]) -> None:

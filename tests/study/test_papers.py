@@ -19,8 +19,12 @@ OF_FREED = [
     *("1_1", "4_1", "4_3", "4_4", "4_5", "4_6", "4_7", "4_8", "4_9", "4_10", "4_11"),
     *(f"5_{k}" for k in range(1, 10)),
 ]  # 4.2 is a diagram of samples in a pixel
+OF_JENDERSIE = (1, 3, 4, 6, 7, 8, 9, 10, 11)  # 2 and 5 are diagrams
 OF_WEINZIERL_HEIGL = (1, 3, 4, 5, 7, 8, 9)  # 2 and 6 are diagrams
-QUICK = ("freed/figure_4_3", "freed/figure_5_2", "rehfeld/surface_coverage", "rehfeld/alternating_layers", "weinzierl-heigl/figure_3")
+QUICK = (
+    *("freed/figure_4_3", "freed/figure_5_2", "rehfeld/surface_coverage", "rehfeld/alternating_layers"),
+    *("weinzierl-heigl/figure_3", "jendersie/figure_3"),
+)
 
 
 @pytest.fixture
@@ -44,6 +48,8 @@ def smaller(study):
     less |= {"sample_lights.lights": lambda n: max(n // 16, 1), "map_size": lambda n: n // 8, "cluster_lights.splat_size": lambda n: n // 8}
     less |= {"shadow_lights.points": lambda n: n // 16, "shadow_lights.size": lambda n: n // 8}
     less |= {"light_voxels.size": lambda n: max(n // 16, 4), "shadow.size": lambda n: n // 16}
+    less |= {"place_surfels.surfels": lambda n: n // 128, "link.links": lambda n: max(n // 8, 1), "link.samples": lambda n: n // 64}
+    less |= {"place_caches.texels": lambda n: n // 8} | {f"place_caches.grid.n{axis}": lambda n: 2 for axis in "xyz"}
     methods = []
     for method in study.methods:
         knobs = method.knobs()
@@ -59,6 +65,11 @@ def test_every_figure_of_the_caches_paper_but_its_diagram_has_its_file():
 
 def test_every_figure_and_table_of_the_thesis_has_its_file():
     assert {f"freed/figure_{n}" for n in OF_FREED} | {"freed/table_5_1", "freed/table_5_2"} <= set(FIGURES)
+
+
+def test_every_figure_and_table_of_the_composition_paper_but_its_diagrams_has_its_file():
+    tables = {f"jendersie/table_{n}" for n in (1, 2, 3, 4)}
+    assert {f"jendersie/figure_{n}" for n in OF_JENDERSIE} | tables | {"jendersie/resolution"} <= set(FIGURES)
 
 
 def test_every_figure_and_table_of_the_area_lights_paper_but_its_diagrams_has_its_file():

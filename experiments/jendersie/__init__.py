@@ -1,0 +1,1 @@
+"""Jendersie et al. 2016: precomputed illuminance composition. Figures and tables from records."""
