@@ -45,5 +45,6 @@ PYBIND11_MODULE(_core, m) {
     bind_caches(m);
     bind_virtual_lights(m);
     bind_surfels(m);
+    bind_stored_surfels(m);
     bind_calibration(m);
 }

@@ -6,10 +6,12 @@
 #include "bindings/rooms.h"
 #include "bindings/run.h"
 #include "bindings/technique.h"
+#include "direct/shadow.h"
 #include "surfels/cluster.h"
 #include "surfels/evaluate.h"
 #include "surfels/light_caches.h"
 #include "surfels/link.h"
+#include "surfels/link/shared_cut.h"
 #include "surfels/open_sides.h"
 #include "surfels/place.h"
 #include "surfels/pull.h"
@@ -98,6 +100,9 @@ void bind_links(py::module_& m) {
             "(caches, links): node of the tree; a copy.")
         .def_readonly("counts", &CacheLinks::counts)
         .def_property_readonly("bytes", &CacheLinks::bytes);
+    py::class_<SharedCut, std::shared_ptr<SharedCut>>(
+        m, "SharedCut", "One cut of the tree for every cache, with all that links of any kind keep of it.")
+        .def_property_readonly("bytes", &SharedCut::bytes);
     py::class_<LightCaches, std::shared_ptr<LightCaches>>(m, "LightCaches", "Incident radiance in spherical harmonics.")
         .def_readonly("bands", &LightCaches::bands)
         .def_readonly("chrominance_bands", &LightCaches::chrominance_bands)
@@ -166,19 +171,25 @@ void bind_precomputation(py::module_& m) {
         py::arg("surfels"), py::arg("scene"), "Surfels as the pixels of a picture, row by row.");
     m.def(
         "place_caches",
-        [](const CacheGrid& technique, const BoundScene& s) {
-            return run([&] { return std::make_shared<CacheSites>(place_caches(technique, s.scene, *s.intersector)); });
+        [](const CacheGrid& technique, const BoundScene& s, const BoundScene& about) {
+            return run([&] {
+                return std::make_shared<CacheSites>(
+                    place_caches(technique, s.scene, *s.intersector, about.scene.geometry->bounds()));
+            });
         },
-        py::arg("technique"), py::arg("scene"), "Caches in a box about the scene.");
+        py::arg("technique"), py::arg("scene"), py::arg("about"), "Caches in a box about a scene, which may hold more.");
     m.def(
         "place_caches",
-        [](const LightMap& technique, const BoundScene& s, const py::object& texcoord) {
+        [](const LightMap& technique, const BoundScene& s, const BoundScene& about, const py::object& texcoord) {
             const auto corners = rows<vec2, float>(texcoord, "texcoord");
-            return run([&] { return std::make_shared<CacheSites>(place_caches(technique, s.scene, *s.intersector, corners)); });
+            return run([&] {
+                return std::make_shared<CacheSites>(
+                    place_caches(technique, s.scene, *s.intersector, about.scene.geometry->bounds(), corners));
+            });
         },
-        py::arg("technique"), py::arg("scene"), py::arg("texcoord"),
-        "Caches in the texels of a map, and in a box. texcoord: (3 triangles, 2) float32, of every corner, in texels; negative: "
-        "the triangle has no chart.");
+        py::arg("technique"), py::arg("scene"), py::arg("about"), py::arg("texcoord"),
+        "Caches in the texels of a map, and in a box about a scene, which may hold more. texcoord: (3 triangles, 2) float32, of "
+        "every corner, in texels; negative: the triangle has no chart.");
     m.def(
         "still_triangles",
         [](const BoundScene& s) {
@@ -207,12 +218,45 @@ void bind_precomputation(py::module_& m) {
             },
             py::arg("technique"), py::arg("sites"), py::arg("surfels"), py::arg("scene"),
             "Which patches of surfels send light to each cache.");
+        m.def(
+            "shared_cut",
+            [](const Technique& technique, const CacheSites& sites, const ClusteredSurfels& surfels, const BoundScene& s) {
+                return run(
+                    [&] { return std::make_shared<SharedCut>(shared_cut(technique, sites, surfels, s.scene, *s.intersector)); });
+            },
+            py::arg("technique"), py::arg("sites"), py::arg("surfels"), py::arg("scene"),
+            "One cut of the tree for every cache; bands and kind of the technique do not matter.");
+        m.def(
+            "take_links",
+            [](const Technique& technique, const SharedCut& cut) {
+                return run([&] { return std::make_shared<CacheLinks>(take_links(technique, cut)); });
+            },
+            py::arg("technique"), py::arg("cut"), "Links out of a shared cut: the same bits as from `link`.");
     };
     bind_link(static_cast<const ShLinks*>(nullptr));
     bind_link(static_cast<const RuntimeProjection*>(nullptr));
 }
 
+template <class Technique>
+void bind_lamp_shadow(py::module_& m) {
+    m.def(
+        "lamp_shadow",
+        [](const Technique& technique, const BoundScene& s, const GBuffer& g, std::uint32_t seed) {
+            return run([&] {
+                Scene lamps;
+                lamps.geometry = s.scene.geometry;
+                lamps.point_lights = s.scene.point_lights, lamps.spot_lights = s.scene.spot_lights;
+                lamps.directional_lights = s.scene.directional_lights;
+                return std::make_shared<DirectLight>(shadow(technique, s.scene, *s.intersector, LightSampler(lamps), g, seed));
+            });
+        },
+        py::arg("technique"), py::arg("scene"), py::arg("gbuffer"), py::arg("seed") = 0,
+        "What pixels reflect of point, spot and directional lights alone: emitters come through links.");
+}
+
 void bind_run_time(py::module_& m) {
+    bind_lamp_shadow<TracedShadows>(m);
+    bind_lamp_shadow<ShadowMap>(m);
     m.def(
         "pull",
         [](const ClusteredSurfels& surfels, const py::object& radiance, bool radiosity) {

@@ -20,6 +20,7 @@ _HOMES = {
     "SceneError": "errors",
     "Motion": "motion",
     **dict.fromkeys(("Frame",), "frame"),
+    "Pieces": "methods.pieces",
     **dict.fromkeys(("Profile", "Stage"), "profile"),
     **dict.fromkeys(("trace_gbuffer", "voxelize", "light_voxels", "prefilter", "march", "glossy", "shadow", "sky", "shade"), "stages"),
     **dict.fromkeys(("distribute", "fill", "preconvolve", "interpolate"), "stages"),
@@ -88,6 +89,7 @@ if TYPE_CHECKING:
     from interreflect.errors import SceneError as SceneError
     from interreflect.frame import Frame as Frame
     from interreflect.machine import about as about
+    from interreflect.methods.pieces import Pieces as Pieces
     from interreflect.motion import Motion as Motion
     from interreflect.profile import Profile as Profile
     from interreflect.profile import Stage as Stage

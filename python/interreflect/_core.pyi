@@ -3183,6 +3183,14 @@ class CacheLinks:
         """
         Whether they take the nodes' radiosity in place of flux.
         """
+class SharedCut:
+    """
+    One cut of the tree for every cache, with all that links of any kind keep of it.
+    """
+
+    @property
+    def bytes(self) -> int:
+        ...
 class LightCaches:
     """
     Incident radiance in spherical harmonics.
@@ -3662,6 +3670,16 @@ def join_lights(lists: collections.abc.Sequence[VirtualLights]) -> VirtualLights
     """
     Several lists of lights as one.
     """
+@typing.overload
+def lamp_shadow(technique: TracedShadows, scene: Scene, gbuffer: GBuffer, seed: typing.SupportsInt | typing.SupportsIndex=0) -> DirectLight:
+    """
+    What pixels reflect of point, spot and directional lights alone: emitters come through links.
+    """
+@typing.overload
+def lamp_shadow(technique: ShadowMap, scene: Scene, gbuffer: GBuffer, seed: typing.SupportsInt | typing.SupportsIndex=0) -> DirectLight:
+    """
+    What pixels reflect of point, spot and directional lights alone: emitters come through links.
+    """
 def light_caches(links: CacheLinks, light: NodeLight, bands: typing.SupportsInt | typing.SupportsIndex, chrominance_bands: typing.SupportsInt | typing.SupportsIndex=0) -> LightCaches:
     """
     The sum over each cache's links.
@@ -3688,6 +3706,10 @@ def link(technique: RuntimeProjection, sites: CacheSites, surfels: ClusteredSurf
     """
     Which patches of surfels send light to each cache.
     """
+def links_from_store(stored: dict[str, typing.Any], sites: CacheSites, surfels: ClusteredSurfels) -> CacheLinks:
+    """
+    What `to_store` gave; every number is checked, also against what they link.
+    """
 def march(technique: TracedRays | DiffuseCones, pyramids: collections.abc.Sequence[Pyramid], gbuffer: GBuffer, scene: Scene, share: EveryPixel | Interleaved, seed: typing.SupportsInt | typing.SupportsIndex) -> GatheredLight:
     """
     Light that arrives over the hemisphere at the pixels.
@@ -3713,14 +3735,14 @@ def place(grid: Grid, scene: Scene, camera: Camera | None=None, aspect: typing.S
     The domain of a grid in a scene, for a picture `aspect` times as wide as high.
     """
 @typing.overload
-def place_caches(technique: CacheGrid, scene: Scene) -> CacheSites:
+def place_caches(technique: CacheGrid, scene: Scene, about: Scene) -> CacheSites:
     """
-    Caches in a box about the scene.
+    Caches in a box about a scene, which may hold more.
     """
 @typing.overload
-def place_caches(technique: LightMap, scene: Scene, texcoord: typing.Any) -> CacheSites:
+def place_caches(technique: LightMap, scene: Scene, about: Scene, texcoord: typing.Any) -> CacheSites:
     """
-    Caches in the texels of a map, and in a box. texcoord: (3 triangles, 2) float32, of every corner, in texels; negative: the triangle has no chart.
+    Caches in the texels of a map, and in a box about a scene, which may hold more. texcoord: (3 triangles, 2) float32, of every corner, in texels; negative: the triangle has no chart.
     """
 def place_surfels(technique: HaltonSurfels | XorshiftSurfels | RelaxedSurfels, scene: Scene) -> Surfels:
     """
@@ -3776,6 +3798,20 @@ def shadow_lights(technique: TracedVisibility | ImperfectShadowMaps | Unshadowed
     """
     What virtual lights see.
     """
+@typing.overload
+def shared_cut(technique: ShLinks, sites: CacheSites, surfels: ClusteredSurfels, scene: Scene) -> SharedCut:
+    """
+    One cut of the tree for every cache; bands and kind of the technique do not matter.
+    """
+@typing.overload
+def shared_cut(technique: RuntimeProjection, sites: CacheSites, surfels: ClusteredSurfels, scene: Scene) -> SharedCut:
+    """
+    One cut of the tree for every cache; bands and kind of the technique do not matter.
+    """
+def sites_from_store(stored: dict[str, typing.Any], scene: Scene) -> CacheSites:
+    """
+    What `to_store` gave; every number is checked against the scene.
+    """
 def sky(technique: TracedSky, scene: Scene, gbuffer: GBuffer, seed: typing.SupportsInt | typing.SupportsIndex=0) -> DirectLight:
     ...
 def still_triangles(scene: Scene) -> tuple[numpy.typing.NDArray[numpy.float32], int]:
@@ -3786,9 +3822,38 @@ def surfel_pixels(surfels: ClusteredSurfels, scene: Scene) -> GBuffer:
     """
     Surfels as the pixels of a picture, row by row.
     """
+def surfels_from_store(stored: dict[str, typing.Any], scene: Scene) -> ClusteredSurfels:
+    """
+    What `to_store` gave; every number is checked against the scene.
+    """
+@typing.overload
+def take_links(technique: ShLinks, cut: SharedCut) -> CacheLinks:
+    """
+    Links out of a shared cut: the same bits as from `link`.
+    """
+@typing.overload
+def take_links(technique: RuntimeProjection, cut: SharedCut) -> CacheLinks:
+    """
+    Links out of a shared cut: the same bits as from `link`.
+    """
 def thread_limit() -> int:
     """
     How many threads work of the calling thread may use; 0: all.
+    """
+@typing.overload
+def to_store(product: ClusteredSurfels) -> dict[str, typing.Any]:
+    """
+    Every array (a view) and number of a precomputed product, by name.
+    """
+@typing.overload
+def to_store(product: CacheSites) -> dict[str, typing.Any]:
+    """
+    Every array (a view) and number of a precomputed product, by name.
+    """
+@typing.overload
+def to_store(product: CacheLinks) -> dict[str, typing.Any]:
+    """
+    Every array (a view) and number of a precomputed product, by name.
     """
 def trace_gbuffer(scene: Scene, camera: Camera, width: typing.SupportsInt | typing.SupportsIndex, height: typing.SupportsInt | typing.SupportsIndex, shade: Exact | FreedCookTorrance | BlinnPhong=...) -> GBuffer:
     """

@@ -54,6 +54,11 @@ def shadow(
     return _core.shadow(technique, scene.core, gbuffer, seed)
 
 
+def lamp_shadow(technique: Any, scene: Scene, gbuffer: _core.GBuffer, seed: int = 0) -> _core.DirectLight:
+    """`shadow` without emitters: what point, spot and directional lights send alone."""
+    return _core.lamp_shadow(technique, scene.core, gbuffer, seed)
+
+
 def sky(technique: Any, scene: Scene, gbuffer: _core.GBuffer, seed: int = 0, gathered: Any = None, glossy: Any = None) -> _core.DirectLight:
     """Light of the environment, reflected once at the pixels. ConeSky takes it from what the march's cones left open:
     `gathered` and `glossy`."""
@@ -277,15 +282,19 @@ def cluster_surfels(technique: Any, surfels: _core.Surfels) -> _core.ClusteredSu
     return _core.cluster_surfels(technique, surfels)
 
 
-def place_caches(technique: Any, scene: Scene, gbuffer: _core.GBuffer | None = None) -> _core.CacheSites:
-    """Where caches of incident radiance stand: `.position`, `.normal` (n, 3). PixelCaches needs the picture: `gbuffer`."""
+def place_caches(
+    technique: Any, scene: Scene, gbuffer: _core.GBuffer | None = None, about: Scene | None = None
+) -> _core.CacheSites:
+    """Where caches of incident radiance stand: `.position`, `.normal` (n, 3). PixelCaches needs the picture: `gbuffer`. about: the scene
+    whose box a grid fills, with bodies that `scene` may lack."""
+    box = (scene if about is None else about).core
     if isinstance(technique, _core.PixelCaches):
         if gbuffer is None:
             raise ValueError("PixelCaches needs the picture whose pixels it stands at: place_caches(..., gbuffer=...)")
         return _core.pixel_sites(gbuffer)
     if isinstance(technique, _core.LightMap):
-        return _core.place_caches(technique, scene.core, unwrap(scene, technique.texels, technique.area_share))
-    return _core.place_caches(technique, scene.core)
+        return _core.place_caches(technique, scene.core, box, unwrap(scene, technique.texels, technique.area_share))
+    return _core.place_caches(technique, scene.core, box)
 
 
 def link(technique: Any, sites: _core.CacheSites, surfels: _core.ClusteredSurfels, scene: Scene) -> _core.CacheLinks | None:

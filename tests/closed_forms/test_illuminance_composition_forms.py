@@ -47,6 +47,24 @@ def test_light_of_one_bounce_and_of_all_is_the_closed_forms(row, knobs, bounces,
     assert measured(row, knobs, bounces) == pytest.approx(1, abs=bound)
 
 
+# Through links alone: every ray to an emitter left out. Measured: see the bounds.
+@pytest.mark.parametrize(("row", "bounces", "bound"), [(1, None, 0.005), (2, None, 0.005), (1, 1, 0.005)])
+def test_emitters_light_through_links_is_the_closed_forms(row, bounces, bound):
+    case = ir.scenes.closed_form(row)
+    method = METHOD.replace(bounces=bounces, emitters="links")
+    frames = [method.render(case.scene, name, size=case.size, seed=1) for name in case.cameras]
+    exact = case.value if bounces is None else 1 + 0.5 + 0.5**2  # Le (1 + rho + rho^2): emitted, and reflected once and twice
+    assert case.measure(*frames) / exact == pytest.approx(1, abs=bound)
+
+
+@pytest.mark.parametrize("link", [ir.ShLinks(links=128), ir.AllSurfels(samples=0)])
+def test_pixels_with_caches_of_their_own_have_light_of_all_bounces(link):
+    case = ir.scenes.closed_form(2)
+    changes = {"place_caches": ir.PixelCaches(), "place_surfels.surfels": 500, "bounces": None, "link": link}
+    frames = [METHOD.replace(changes).render(case.scene, name, size=(16, 16)) for name in case.cameras]
+    assert case.measure(*frames) / case.value == pytest.approx(1, abs=0.01)
+
+
 def spread_in_the_sphere(surfels, links, bands):
     """Of the light that is the same everywhere, over its mean."""
     case = ir.scenes.closed_form(4)

@@ -193,7 +193,8 @@ def test_light_does_not_come_through_a_sheet_with_two_sides():
     ({"evaluate": ir.SphericalHarmonicLobes(chrominance_bands=5)}, ValueError, "the bands of the links"),
     ({"sky": ir.ConeSky()}, ValueError, "ConeSky needs cones"),
     ({"evaluate": ir.DirectLinks(), "link": ir.AllSurfels()}, ValueError, "AllSurfels stores none"),
-    ({"place_caches": ir.PixelCaches(), "bounces": None}, ValueError, "not surfels for another bounce"),
+    ({"emitters": "cones"}, ValueError, "emitters must be one of rays, links"),
+    ({"link": ir.ShLinks(bands=4), "evaluate": ir.SphericalHarmonicLobes(chrominance_bands=6)}, ValueError, "the bands of the links"),
     ({"shadow": ir.VoxelCones()}, ValueError, "VoxelCones needs voxels"),
 ])  # fmt: skip
 def test_bad_combinations_are_value_errors(changes, error, message):
@@ -223,7 +224,6 @@ def test_products_that_do_not_belong_together_are_value_errors():
 
 
 EXTREMES = {
-    "no surfels": {"place_surfels": ir.HaltonSurfels(surfels=0)},
     "one surfel": {"place_surfels": ir.XorshiftSurfels(surfels=1)},
     "fewer surfels than links": {"place_surfels": ir.HaltonSurfels(surfels=20)},
     "one band": {"link": ir.ShLinks(bands=1)},

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -10,19 +11,20 @@ from numpy.typing import NDArray
 
 from interreflect import _core
 from interreflect.frame import Image
+from interreflect.methods import composition_pieces
 from interreflect.methods.composition_presets import PRESETS
 from interreflect.methods.knobs import knob, stage
 from interreflect.methods.method import Method, method
+from interreflect.methods.pieces import Pieces
 from interreflect.methods.prepared import View
 from interreflect.profile import Profile
 from interreflect.scenes.scene import Scene
 from interreflect.stages import (
-    cluster_surfels,
     evaluate,
+    lamp_shadow,
     light_caches,
     link,
     place_caches,
-    place_surfels,
     pull,
     shade,
     shadow,
@@ -37,8 +39,16 @@ MOST_PASSES = 256
 
 
 @dataclass(frozen=True)
+class Caches:
+    """Where caches stand, and what they are linked to: None where nothing is stored."""
+
+    sites: _core.CacheSites
+    links: _core.CacheLinks | None
+
+
+@dataclass(frozen=True)
 class CacheLight:
-    """What a frame leaves to the next: the caches' light, or where pixels take it from the links what comes through them."""
+    """What comes to caches, or where pixels take it from the links what comes through them. A frame leaves its surfels' to the next."""
 
     caches: _core.LightCaches | None
     patches: _core.NodeLight
@@ -56,6 +66,11 @@ class IlluminanceComposition(Method):
     bounces: int | None = knob(
         default=1, doc="most indirect bounces; None: all, one more with every frame, and until they converge in a frame without history",
         minimum=1, maximum=64, optional=True,
+    )  # fmt: skip
+
+    emitters: str = knob(
+        default="rays", choices=("rays", "links"),
+        doc="how the light of emitting surfaces comes to pixels and surfels: by the shadow stage, or from their surfels through links",
     )  # fmt: skip
 
     place_surfels: Any = stage(default=_core.HaltonSurfels())
@@ -82,72 +97,119 @@ class IlluminanceComposition(Method):
                 f"IlluminanceComposition.evaluate.chrominance_bands must lie in [0, {self.link.bands}], the bands of the links, "
                 f"got {self.chrominance_bands}"
             )
-        if isinstance(self.place_caches, _core.PixelCaches) and self.bounces != 1:
-            raise ValueError("IlluminanceComposition.bounces: PixelCaches light pixels alone, not surfels for another bounce")
 
     @property
     def chrominance_bands(self) -> int:
         bands: int = getattr(self.evaluate, "chrominance_bands", 0)  # DirectLinks has no caches' light
         return bands
 
-    def precompute(self, scene: Scene) -> dict[str, Any]:
-        surfels = cluster_surfels(self.cluster_surfels, place_surfels(self.place_surfels, scene))
-        state: dict[str, Any] = {"surfels": surfels, "pixels": surfel_pixels(surfels, scene)}
-        if not isinstance(self.place_caches, _core.PixelCaches):
-            state["sites"] = place_caches(self.place_caches, scene)
-            state["links"] = link(self.link, state["sites"], surfels, scene)
-        return state
+    def precompute(self, scene: Scene, pieces: Pieces) -> dict[str, Any]:
+        return composition_pieces.precompute(self, scene, pieces)
+
+    def shows(self, scene: Scene, prepared: Scene) -> bool:
+        """What surfaces emit belongs to the frame."""
+        return scene is prepared or scene.surface_hash == prepared.surface_hash
+
+    @property
+    def pieces_key(self) -> tuple[Any, ...]:
+        return composition_pieces.key_of(self)
+
+    @property
+    def precomputed_by(self) -> str:
+        """Surfels, tree, caches and links; not what pixels get from the caches."""
+        return repr((self.place_surfels, self.cluster_surfels, self.place_caches, self.link, self.links_surfels))
+
+    @property
+    def links_surfels(self) -> bool:
+        """Whether surfels have caches of their own, for light that comes to them from other surfels: PixelCaches have none there."""
+        several = self.bounces != 1 or self.emitters == "links"
+        return several and isinstance(self.place_caches, _core.PixelCaches)
+
+    def to_store(self, state: Mapping[str, Any]) -> dict[str, Any]:
+        return composition_pieces.to_store(state)
+
+    def from_store(self, stored: dict[str, Any], scene: Scene) -> dict[str, Any]:
+        return composition_pieces.from_store(self, stored, scene)
 
     def compose(self, view: View, profile: Profile) -> tuple[Image, Image, Any]:
         scene, seed = view.scene, view.seed
         with profile.stage("gbuffer") as note:
             gbuffer = note(trace_gbuffer(scene, view.camera, view.size, self.shade))
-        sites, links = self.linked(view, gbuffer, profile)
-        arrived = self.light(view, sites, links, profile)
+        view = self.with_emission(view, profile)
+        at_pixels, at_surfels = self.linked(view, gbuffer, profile)
+        emitted = self.emitted(view, at_pixels, at_surfels, profile)
+        arrived, kept = self.light(view, at_pixels, at_surfels, emitted, profile)
         with profile.stage("evaluate") as note:
-            light = note(evaluate(self.evaluate, arrived.caches, sites, gbuffer, scene, links, arrived.patches))
+            light = note(self.gathered(arrived, at_pixels, gbuffer, scene))
         with profile.stage("shadow") as note:
-            direct_light = note(shadow(self.shadow, scene, gbuffer, seed))
+            direct_light = note((shadow if emitted is None else lamp_shadow)(self.shadow, scene, gbuffer, seed))
         with profile.stage("sky") as note:
             environment = note(sky(self.sky, scene, gbuffer, seed))
         with profile.stage("shade"):
             indirect = shade(gbuffer, light.gathered, light.glossy)
             direct = gbuffer.emission + direct_light.radiance + environment.radiance
-        return direct, indirect, arrived
+        if emitted is not None:
+            with profile.stage("evaluate_emitters") as note:
+                light = note(self.gathered(emitted[0], at_pixels, gbuffer, scene))
+                direct = direct + shade(gbuffer, light.gathered, light.glossy)
+        return direct, indirect, kept
 
-    def linked(self, view: View, gbuffer: _core.GBuffer, profile: Profile) -> tuple[_core.CacheSites, _core.CacheLinks | None]:
-        """Caches and their links: built once, or where they stand at pixels in every frame."""
+    def with_emission(self, view: View, profile: Profile) -> View:
+        """The frame with surfels that emit what its scene's surfaces do."""
+        if self.emitters == "rays" or view.scene.still_hash == view.state["emission_of"]:
+            return view
+        with profile.stage("surfel_pixels") as note:
+            return replace(view, state={**view.state, "pixels": note(surfel_pixels(view.state["surfels"], view.scene))})
+
+    def linked(self, view: View, gbuffer: _core.GBuffer, profile: Profile) -> tuple[Caches, Caches]:
+        """Caches and their links for pixels and for surfels: the same, built once, or where they stand at pixels anew in every frame."""
         if "sites" in view.state:
-            return view.state["sites"], view.state["links"]
+            once = Caches(view.state["sites"], view.state["links"])
+            return once, once
         with profile.stage("place_caches") as note:
             sites = note(place_caches(self.place_caches, view.scene, gbuffer))
         with profile.stage("link") as note:
             links = link(self.link, sites, view.state["surfels"], view.scene)
             if links is not None:
                 note(links)
-        return sites, links
+        return Caches(sites, links), Caches(view.state["surfel_sites"], view.state["surfel_links"])
 
-    def light(self, view: View, sites: _core.CacheSites, links: _core.CacheLinks | None, profile: Profile) -> CacheLight:
-        """What comes to the caches of all bounces asked for."""
+    def emitted(
+        self, view: View, at_pixels: Caches, at_surfels: Caches, profile: Profile
+    ) -> tuple[CacheLight, CacheLight] | None:
+        """What emitters send to the caches of pixels and of surfels; None where rays bring it."""
+        if self.emitters == "rays":
+            return None
+        sent = np.asarray(view.state["pixels"].emission)
+        to_pixels = self.pass_on(view, sent, at_pixels, 0, profile)
+        return to_pixels, to_pixels if at_surfels is at_pixels else self.pass_on(view, sent, at_surfels, 0, profile)
+
+    def light(
+        self, view: View, at_pixels: Caches, at_surfels: Caches, emitted: tuple[CacheLight, CacheLight] | None, profile: Profile
+    ) -> tuple[CacheLight, CacheLight | None]:
+        """What comes of all bounces asked for to the caches of pixels, and to those of surfels for the next frame."""
         with profile.stage("light_surfels") as note:
-            lit = self.light_surfels(view, note)
+            lit = self.light_surfels(view, note, emitters=emitted is None)
+            if emitted is not None:
+                lit = lit + self.reflected(view, emitted[1], at_surfels, note)
         last: CacheLight | None = view.history if self.bounces is None else None
         passes = self.bounces if self.bounces is not None else 1 if last is not None else MOST_PASSES
-        sent = lit
+        sent, together = lit, at_surfels is at_pixels
         for bounce in range(passes):
             if last is not None:
                 with profile.stage("light_surfels_again") as note:
-                    before, sent = sent, lit + self.reflected(view, last, sites, links, note)
+                    before, sent = sent, lit + self.reflected(view, last, at_surfels, note)
                 if self.bounces is None and view.history is None and converged(before, sent):
                     break
-            last = self.pass_on(view, sent, sites, links, bounce, profile)
-        assert last is not None
-        return last
+            if together or bounce < passes - 1 or self.bounces is None:
+                last = self.pass_on(view, sent, at_surfels, bounce, profile)
+        if together:
+            assert last is not None
+            return last, last
+        return self.pass_on(view, sent, at_pixels, 0, profile), last
 
-    def pass_on(
-        self, view: View, sent: NDArray[np.float32], sites: _core.CacheSites, links: _core.CacheLinks | None, bounce: int, profile: Profile
-    ) -> CacheLight:
-        """From the surfels to the caches."""
+    def pass_on(self, view: View, sent: NDArray[np.float32], to: Caches, bounce: int, profile: Profile) -> CacheLight:
+        """From the surfels to caches."""
         surfels = view.state["surfels"]
         with profile.stage("pull") as note:
             patches = note(pull(surfels, sent, getattr(self.link, "pull", "flux") == "radiosity"))
@@ -155,25 +217,25 @@ class IlluminanceComposition(Method):
             return CacheLight(None, patches)
         with profile.stage("light_caches") as note:
             seed = (view.seed + bounce) % 2**32
-            caches = note(light_caches(self.link, links, sites, surfels, patches, view.scene, self.chrominance_bands, seed))
+            caches = note(light_caches(self.link, to.links, to.sites, surfels, patches, view.scene, self.chrominance_bands, seed))
         return CacheLight(caches, patches)
 
-    def light_surfels(self, view: View, note: Any) -> NDArray[np.float32]:
-        """(rows, columns, 3): radiance that surfels reflect of the lights'."""
+    def gathered(self, light: CacheLight, caches: Caches, gbuffer: _core.GBuffer, scene: Scene) -> _core.SurfelLight:
+        return evaluate(self.evaluate, light.caches, caches.sites, gbuffer, scene, caches.links, light.patches)
+
+    def light_surfels(self, view: View, note: Any, emitters: bool) -> NDArray[np.float32]:
+        """(rows, columns, 3): radiance that surfels reflect of the lights', and by rays of the emitters'."""
         pixels = view.state["pixels"]
-        lights = note(shadow(self.shadow, view.scene, pixels, view.seed))
+        lights = note((shadow if emitters else lamp_shadow)(self.shadow, view.scene, pixels, view.seed))
         # Neighbours in the list of surfels are none in a picture: nothing may be filtered over them.
         environment = note(sky(self.sky.replace(filter_radius=0), view.scene, pixels, view.seed))
         radiance: NDArray[np.float32] = lights.radiance + environment.radiance
         return radiance
 
-    def reflected(
-        self, view: View, last: CacheLight, sites: _core.CacheSites, links: _core.CacheLinks | None, note: Any
-    ) -> NDArray[np.float32]:
+    def reflected(self, view: View, last: CacheLight, at_surfels: Caches, note: Any) -> NDArray[np.float32]:
         """(rows, columns, 3): radiance that surfels reflect of the caches'."""
         pixels = view.state["pixels"]
-        light = note(evaluate(self.evaluate, last.caches, sites, pixels, view.scene, links, last.patches))
-        return shade(pixels, light.gathered)
+        return shade(pixels, note(self.gathered(last, at_surfels, pixels, view.scene)).gathered)
 
 
 def converged(before: NDArray[np.float32], after: NDArray[np.float32]) -> bool:

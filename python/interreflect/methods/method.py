@@ -11,9 +11,12 @@ from collections.abc import Collection, Mapping
 from pathlib import Path
 from typing import Any, ClassVar, TypeVar, dataclass_transform
 
+import numpy as np
+
 from interreflect import _core
 from interreflect.frame import Frame, Image
 from interreflect.methods.knobs import check_knob, flatten, is_technique, knob, no_preset, replace_in, stage, unknown
+from interreflect.methods.pieces import Pieces
 from interreflect.methods.prepared import Prepared, View
 from interreflect.profile import Profile
 from interreflect.scenes.camera import Camera
@@ -88,13 +91,17 @@ class Method(ABC):
             changed = dataclasses.replace(changed, **{head: value})  # type: ignore[type-var]
         return changed
 
-    def prepare(self, scene: Scene, threads: int | None = None) -> Prepared:
-        """Builds what does not belong to a frame: ray hierarchy, texture levels, and what the method precomputes."""
+    def prepare(self, scene: Scene, threads: int | None = None, pieces: Pieces | None = None) -> Prepared:
+        """Builds what does not belong to a frame: ray hierarchy, texture levels, and what the method precomputes.
+
+        pieces: what methods prepared before this one have made of the same scene; it takes what it needs of them and leaves its own."""
+        kept = Pieces(keeps=False) if pieces is None else pieces
+        kept.begin((scene.still_hash, threads))
         with _core.Threads(threads):
             hierarchy = scene.core_milliseconds
             start = time.perf_counter()
-            state = self.precompute(scene)
-            spent = 1e3 * (time.perf_counter() - start)
+            state = self.precompute(scene, kept)
+            spent = 1e3 * (time.perf_counter() - start) + kept.saved_milliseconds
         return Prepared(method=self, scene=scene, state=state, precompute_milliseconds=hierarchy + spent, threads=threads)
 
     def load(self, path: str | Path, scene: Scene) -> Prepared:
@@ -112,9 +119,33 @@ class Method(ABC):
         """One frame: `prepare` and `Prepared.render` in one call. size: (width, height), None: the camera's. threads: None: all."""
         return self.prepare(scene, threads).render(camera, size=size, seed=seed, threads=threads)
 
-    def precompute(self, scene: Scene) -> dict[str, Any]:
-        """Arrays that are built once per geometry and materials; none unless a method says so."""
+    def precompute(self, scene: Scene, pieces: Pieces) -> dict[str, Any]:
+        """What is built once per geometry and materials, by name; nothing unless a method says so. Parts that other methods may share
+        are made by `pieces.take`."""
         return {}
+
+    def shows(self, scene: Scene, prepared: Scene) -> bool:
+        """Whether what was precomputed for one scene holds for the other."""
+        return scene is prepared or scene.still_hash == prepared.still_hash
+
+    @property
+    def pieces_key(self) -> tuple[Any, ...]:
+        """What the pieces of its precomputation depend on, those that all others build on first; (): it shares none. A study
+        measures methods side by side whose keys begin alike."""
+        return ()
+
+    @property
+    def precomputed_by(self) -> str:
+        """All knobs that what `precompute` makes depends on, in words."""
+        return repr(self)
+
+    def to_store(self, state: Mapping[str, Any]) -> dict[str, Any]:
+        """The arrays and numbers of the state to keep in a file; what else there is, `from_store` or the frames make anew."""
+        return {name: value for name, value in state.items() if isinstance(value, np.ndarray)}
+
+    def from_store(self, stored: dict[str, Any], scene: Scene) -> dict[str, Any]:
+        """The state out of what `to_store` kept. ValueError where that is not sound."""
+        return stored
 
     @abstractmethod
     def compose(self, view: View, profile: Profile) -> tuple[Image, Image] | tuple[Image, Image, Any]:

@@ -7,10 +7,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from interreflect import _core
 from interreflect.frame import Frame
+from interreflect.methods import stored
 from interreflect.motion import Motion
 from interreflect.profile import Profile
 from interreflect.scenes.camera import Camera, checked_size
@@ -52,12 +51,13 @@ class Prepared:
         scene: Scene | None = None,
         history: Any = None,
     ) -> Frame:
-        """The next frame. scene: the same scene with moved bodies or other lights. history: the last frame's.
+        """The next frame. scene: the same scene with moved bodies or other lights, for IlluminanceComposition also with other emission.
+        history: the last frame's.
 
         ValueError for a scene of other geometry or materials, an unknown camera, a size or seed out of range.
         """
         shown = self.scene if scene is None else scene
-        if shown is not self.scene and shown.still_hash != self.scene.still_hash:
+        if not self.method.shows(shown, self.scene):
             raise ValueError("render(scene=...) takes the prepared scene with moved bodies, other lights or cameras, not another one")
         if not 0 <= seed < 2**32:
             raise ValueError(f"seed must lie in [0, 2^32), got {seed}")
@@ -83,24 +83,24 @@ class Prepared:
             history = frame.history
             yield frame
 
-    def _key(self) -> str:
-        return f"{self.method!r} {self.scene.still_hash}"
-
     def save(self, path: str | Path) -> None:
-        """Writes the arrays that were precomputed, with the geometry, materials and knobs they belong to; a method makes what else it
-        keeps anew when it is missing."""
-        arrays: dict[str, Any] = {key: value for key, value in self.state.items() if isinstance(value, np.ndarray)}
-        with Path(path).open("wb") as file:
-            np.savez(file, key=np.array(self._key()), milliseconds=np.array(self.precompute_milliseconds), **arrays)
+        """Writes what was precomputed, with the geometry, materials and knobs it belongs to; a method makes what else it keeps anew."""
+        belongs = {
+            "method": type(self.method).__name__, "knobs": self.method.precomputed_by, "scene": self.scene.still_hash,
+            "milliseconds": self.precompute_milliseconds,
+        }  # fmt: skip
+        stored.write(Path(path), belongs, self.method.to_store(self.state))
 
     @staticmethod
     def load(path: str | Path, method: Method, scene: Scene) -> Prepared:
-        """What `save` wrote. ValueError where it belongs to other geometry, materials or knobs."""
-        with np.load(Path(path), allow_pickle=False) as stored:
-            arrays = dict(stored)
-        spent = float(arrays.pop("milliseconds"))
-        key = str(arrays.pop("key"))
-        prepared = Prepared(method=method, scene=scene, precompute_milliseconds=spent, state=arrays)
-        if key != prepared._key():
-            raise ValueError(f"{path}: made from another scene, other materials or other knobs")
-        return prepared
+        """What `save` wrote. ValueError where it is damaged, or belongs to other geometry, materials or knobs."""
+        belongs, values = stored.read(Path(path))
+        if belongs["scene"] != scene.still_hash:
+            raise ValueError(f"{path}: made from another scene, or one with other materials than {scene.name!r}")
+        if (belongs["method"], belongs["knobs"]) != (type(method).__name__, method.precomputed_by):
+            raise ValueError(f"{path}: made by {belongs['method']} with {belongs['knobs']}, not with {method.precomputed_by}")
+        try:
+            state = method.from_store(values, scene)
+        except ValueError as error:
+            raise ValueError(f"{path}: {error}") from error
+        return Prepared(method=method, scene=scene, precompute_milliseconds=belongs["milliseconds"], state=state)

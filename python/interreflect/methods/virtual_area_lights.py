@@ -9,6 +9,7 @@ from interreflect import _core
 from interreflect.frame import Image
 from interreflect.methods.knobs import knob, stage
 from interreflect.methods.method import Method, method
+from interreflect.methods.pieces import Pieces
 from interreflect.methods.prepared import View
 from interreflect.methods.virtual_light_presets import PRESETS
 from interreflect.profile import Profile
@@ -73,7 +74,7 @@ class VirtualAreaLights(Method):
         if isinstance(self.sky, _core.ConeSky):
             raise ValueError("VirtualAreaLights.sky: ConeSky needs cones, and virtual lights have none")
 
-    def precompute(self, scene: Scene) -> dict[str, Any]:
+    def precompute(self, scene: Scene, pieces: Pieces) -> dict[str, Any]:
         return {"points": scatter_points(self.shadow_lights, scene)}
 
     def compose(self, view: View, profile: Profile) -> tuple[Image, Image, Any]:

@@ -8,6 +8,7 @@ from interreflect import _core
 from interreflect.methods.bodies import parts_of, voxelize_bodies
 from interreflect.methods.knobs import knob, stage
 from interreflect.methods.method import Method, method
+from interreflect.methods.pieces import Pieces
 from interreflect.methods.prepared import View
 from interreflect.profile import Profile
 from interreflect.scenes.scene import Scene
@@ -41,7 +42,7 @@ class VoxelMethod(Method):
         """One; all where `light_voxels` gathers them from frame to frame."""
         return None if holds_all_bounces(self.light_voxels) else 1
 
-    def precompute(self, scene: Scene) -> dict[str, Any]:
+    def precompute(self, scene: Scene, pieces: Pieces) -> dict[str, Any]:
         """Voxels of the bodies, as large as those of the first camera's grid; without a camera they wait for the first frame."""
         if self.bodies == "together" or not scene.cameras:
             return {}

@@ -107,6 +107,11 @@ def still_digest(scene: Scene) -> str:
     return digest("still", tuple((mesh.shape_hash, mesh.material.hash, mesh.body, mesh.transform) for mesh in scene.meshes))
 
 
+def surface_digest(scene: Scene) -> str:
+    """Digest of all that stays when bodies move and lights and what surfaces emit change."""
+    return digest("surface", tuple((mesh.shape_hash, mesh.material.reflection_hash, mesh.body, mesh.transform) for mesh in scene.meshes))
+
+
 def _instances(scene: Scene, number_of_shape: dict[tuple[str, int], int], keys: list[tuple[str, int]]) -> list[Any]:
     body_number = {name: k for k, name in enumerate(scene.bodies)}  # the world comes first
     placed: list[tuple[int, NDArray[np.float64], int]] = []
@@ -131,7 +136,8 @@ def _build_hierarchy(scene: Scene, tables: _Tables) -> _Hierarchy:
             number_of_shape[key] = len(arrays)
             arrays.append((mesh.positions, mesh.triangles, mesh.normals, mesh.texcoords, key[1]))
     placed = _instances(scene, number_of_shape, keys)
-    still = still_digest(scene)
+    # The core's materials count by number: emission may make two of one, or one of two.
+    still = digest("hierarchy", surface_digest(scene), tuple(key[1] for key in keys))
     poses = digest("poses", tuple(scene.bodies.values()))
     same = _hierarchies.get(still + poses)
     if same is not None:

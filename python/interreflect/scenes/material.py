@@ -91,3 +91,8 @@ class Material:
         maps = tuple(None if m is None else m.hash for m in (self.albedo_map, self.emission_map, self.mask))
         lobe = (self.specular, self.roughness, self.exponent, self.lobe)
         return digest("material", self.albedo, lobe, self.emission, maps, self.two_sided)
+
+    @property
+    def reflection_hash(self) -> str:
+        """Digest of all keys but the name and emission."""
+        return self.replace(emission=(0, 0, 0), emission_map=None).hash

@@ -175,6 +175,13 @@ class Scene(Content):
 
         return still_digest(self)
 
+    @cached_property
+    def surface_hash(self) -> str:
+        """Digest of what stays when also the materials' emission changes."""
+        from interreflect.scenes.compile import surface_digest
+
+        return surface_digest(self)
+
     def __getstate__(self) -> dict[str, Any]:
         state = {key: value for key, value in self.__dict__.items() if key not in ("_compiled", "bounds")}
         return state | {"cameras": dict(self.cameras), "bodies": dict(self.bodies)}

@@ -14,6 +14,7 @@ import numpy as np
 
 import interreflect.cache as cache
 from interreflect import metrics
+from interreflect.methods.pieces import Pieces
 from interreflect.progress import told_to
 from interreflect.study.calibration import Calibration, calibrate
 from interreflect.study.interface import Frame, Method, Prepared, Scene
@@ -44,7 +45,8 @@ ON_INDIRECT: dict[str, Metric] = {
 
 
 class Bench:
-    """Measures cells one by one; keeps the scene, the truths and the preparation at hand, and nothing of earlier scenes."""
+    """Measures cells one by one; keeps the scene, the truths, the preparation and its pieces at hand, and nothing of earlier
+    scenes."""
 
     def __init__(self, say: Callable[[Phase | Pictures], None], await_go: Callable[[], object]) -> None:
         self._say, self._await_go = say, await_go
@@ -52,6 +54,7 @@ class Bench:
         self._truths: dict[str, Truth] = {}
         self._calibrations: dict[int | None, tuple[float, Calibration]] = {}  # threads -> when, what
         self._prepared: tuple[bytes, Prepared, float] | None = None  # pickled method, preparation, its peak of memory
+        self._pieces = Pieces()  # of the methods measured one after the other that share some
         _load_libraries()
         give_back()
         self.idle = resident_bytes()
@@ -102,6 +105,7 @@ class Bench:
     def _take_scene(self, request: Request) -> Scene:
         if request.scene is not None:
             self._scene = self._prepared = None
+            self._pieces = Pieces()
             self._truths = {}
             give_back()
             self._scene = (request.scene_key, pickle.loads(request.scene))
@@ -160,11 +164,19 @@ class Bench:
     def _prepare(self, scene: Scene, request: Request) -> tuple[Prepared, float]:
         """The method's preparation, kept for the next camera or seed, and the peak of memory while it was made."""
         if self._prepared is None or self._prepared[0] != request.method:
+            last_peak = 0.0 if self._prepared is None else self._prepared[2]
             self._prepared = None  # the memory of the last one is free before the next one takes its own
+            method: Method = pickle.loads(request.method)
+            shares = bool(getattr(method, "pieces_key", ()))
+            if not shares:
+                self._pieces = Pieces()
             give_back()
             reset_peak()
-            method: Method = pickle.loads(request.method)
-            self._prepared = (request.method, method.prepare(scene, threads=request.threads), peak_bytes())
+            more = {"pieces": self._pieces} if shares else {}
+            prepared = method.prepare(scene, threads=request.threads, **more)
+            # Pieces taken as they are: the peak while they were made counts, the last cell's at most.
+            taken = self._pieces.saved_milliseconds > 0
+            self._prepared = (request.method, prepared, max(peak_bytes(), last_peak) if taken else peak_bytes())
         return self._prepared[1:]
 
 

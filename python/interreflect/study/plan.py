@@ -139,9 +139,11 @@ class Plan:
         return self._method[1]
 
     def _order(self) -> list[int]:
-        """Scene by scene and method by method, so that cameras and seeds share one preparation."""
-        first = {(c.scene.hash, id(c.method)): i for i, c in reversed(list(enumerate(self.cells)))}
-        return sorted(range(len(self.cells)), key=lambda i: (first[self.cells[i].scene.hash, id(self.cells[i].method)], i))
+        """Scene by scene and method by method, so that cameras and seeds share one preparation; methods that share pieces of theirs
+        one after the other."""
+        groups = [_groups(cell) for cell in self.cells]
+        first = {group: i for i, of_cell in reversed(list(enumerate(groups))) for group in of_cell}
+        return sorted(range(len(self.cells)), key=lambda i: (*(first[group] for group in groups[i]), i))
 
     def _is_settled(self, record: Record | None) -> bool:
         """Is there a record, and not one that a limit ended which is wider now?"""
@@ -170,6 +172,12 @@ class Plan:
             machine=self._machine,
             warnings=tuple(warnings),
         )
+
+
+def _groups(cell: Cell) -> list[tuple[Any, ...]]:
+    """What cells have in common, from the scene to the preparation."""
+    key = (cell.scene.hash, *getattr(cell.method, "pieces_key", ()))
+    return [*(key[:length] for length in range(1, len(key) + 1)), (*key, id(cell.method))]
 
 
 def cell_key(study: Study, cell: Cell) -> str:

@@ -6,7 +6,6 @@
 #include "math/half.h"
 #include "math/octahedral_map.h"
 #include "math/spherical_harmonics.h"
-#include "surfels/link/linked_caches.h"
 
 namespace interreflect {
 namespace {
@@ -25,18 +24,21 @@ ConeLink cone_link(std::uint32_t node, const vec3& towards, float solid_angle, f
 
 }  // namespace
 
+void cut_to_cones(const CacheCut& cache, const ClusteredSurfels& surfels, CacheLinks& links) {
+    std::size_t at = cache.cache * static_cast<std::size_t>(links.per_cache);
+    for (const std::uint32_t node : cache.nodes) {
+        vec3 towards(0);
+        cache.for_each_direction(surfels, node, [&](const vec3& direction, float weight) { towards += direction * weight; });
+        const float scale = 1.0f / (pi * links.unit * (links.radiosity ? 1.0f : surfels.tree.area[node]));
+        links.cones[at++] = cone_link(node, towards, cache.cut.solid_angle(node), scale);
+    }
+}
+
 CacheLinks link(const RuntimeProjection& technique, const CacheSites& sites, const ClusteredSurfels& surfels, const Scene& scene,
                 const Intersector& intersector) {
     CacheLinks links = make_links(technique, CacheLinks::Kind::cones, sites, surfels);
-    links.counts = for_each_cut(technique, sites, surfels, scene, intersector, [&](const CacheCut& cache) {
-        std::size_t at = cache.cache * static_cast<std::size_t>(links.per_cache);
-        for (const std::uint32_t node : cache.nodes) {
-            vec3 towards(0);
-            cache.for_each_direction(surfels, node, [&](const vec3& direction, float weight) { towards += direction * weight; });
-            const float scale = 1.0f / (pi * links.unit * (links.radiosity ? 1.0f : surfels.tree.area[node]));
-            links.cones[at++] = cone_link(node, towards, cache.cut.solid_angle(node), scale);
-        }
-    });
+    links.counts = for_each_cut(technique, sites, surfels, scene, intersector,
+                                [&](const CacheCut& cache) { cut_to_cones(cache, surfels, links); });
     return links;
 }
 

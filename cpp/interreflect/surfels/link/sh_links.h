@@ -3,6 +3,7 @@
 #include "data/scene.h"
 #include "surfels/cluster/post_order.h"
 #include "surfels/link/link_knobs.h"
+#include "surfels/link/linked_caches.h"
 #include "visibility/intersector.h"
 
 namespace interreflect {
@@ -19,5 +20,8 @@ struct ShLinks : LinkKnobs {
 /// std::invalid_argument where the links would need more than 4 GiB.
 CacheLinks link(const ShLinks& technique, const CacheSites& sites, const ClusteredSurfels& surfels, const Scene& scene,
                 const Intersector& intersector);
+
+/// Writes one cache's links, as many bands as `links` have.
+void project_cut(const CacheCut& cache, const ClusteredSurfels& surfels, CacheLinks& links);
 
 }  // namespace interreflect

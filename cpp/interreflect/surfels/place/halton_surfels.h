@@ -13,7 +13,7 @@ struct HaltonSurfels {
     bool operator==(const HaltonSurfels&) const = default;
     static constexpr auto description = describe(
         "HaltonSurfels", "Points of Halton's sequence on every triangle.", Source{"Jendersie et al. 2016", "4.2"},
-        Param{"surfels", &HaltonSurfels::surfels, "how many, on all of the still surface", Unit::none, between(0, 1 << 22)});
+        Param{"surfels", &HaltonSurfels::surfels, "how many, on all of the still surface", Unit::none, between(1, 1 << 22)});
 };
 
 Surfels place_surfels(const HaltonSurfels& technique, const Scene& scene, const Intersector& intersector);

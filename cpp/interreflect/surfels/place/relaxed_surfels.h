@@ -15,7 +15,7 @@ struct RelaxedSurfels {
     static constexpr auto description = describe(
         "RelaxedSurfels", "Halton's points that push their neighbours away along the surface.",
         Source{"Jendersie et al. 2016", "4.2"},
-        Param{"surfels", &RelaxedSurfels::surfels, "how many, on all of the still surface", Unit::none, between(0, 1 << 22)},
+        Param{"surfels", &RelaxedSurfels::surfels, "how many, on all of the still surface", Unit::none, between(1, 1 << 22)},
         Param{"iterations", &RelaxedSurfels::iterations, "times that all move", Unit::none, between(0, 1024)});
 };
 

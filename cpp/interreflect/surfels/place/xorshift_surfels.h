@@ -13,7 +13,7 @@ struct XorshiftSurfels {
     bool operator==(const XorshiftSurfels&) const = default;
     static constexpr auto description = describe(
         "XorshiftSurfels", "Random points on every triangle.", Source{"Jendersie et al. 2016", "4.2"},
-        Param{"surfels", &XorshiftSurfels::surfels, "how many, on all of the still surface", Unit::none, between(0, 1 << 22)});
+        Param{"surfels", &XorshiftSurfels::surfels, "how many, on all of the still surface", Unit::none, between(1, 1 << 22)});
 };
 
 Surfels place_surfels(const XorshiftSurfels& technique, const Scene& scene, const Intersector& intersector);

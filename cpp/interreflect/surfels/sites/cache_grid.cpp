@@ -36,12 +36,12 @@ Buffer<std::uint32_t> flood(const GridSites& grid) {
 }
 
 }  // namespace
-CacheSites place_caches(const CacheGrid& technique, const Scene& scene, const Intersector& intersector) {
+CacheSites place_caches(const CacheGrid& technique, const Scene& scene, const Intersector& intersector, const Bounds& about) {
     const ivec3 size(technique.nx, technique.ny, technique.nz);
     const std::size_t cells =
         static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y) * static_cast<std::size_t>(size.z);
     CacheSites sites;
-    Bounds box = scene.geometry->bounds();
+    Bounds box = about;
     if (!(box.lower.x <= box.upper.x)) box = {vec3(0), vec3(0)};
     sites.grid = {size, box, Buffer<std::uint32_t>(cells), {}};
     const auto middle = [&](std::size_t cell) {

@@ -25,6 +25,7 @@ struct CacheGrid {
               "share of what a cache sees that may be backs of surfaces; 1: none is left out", Unit::none, between(0, 1)});
 };
 
-CacheSites place_caches(const CacheGrid& technique, const Scene& scene, const Intersector& intersector);
+/// box: what the cells fill, world space.
+CacheSites place_caches(const CacheGrid& technique, const Scene& scene, const Intersector& intersector, const Bounds& box);
 
 }  // namespace interreflect

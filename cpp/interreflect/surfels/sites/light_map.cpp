@@ -125,7 +125,7 @@ class Map {
 
 }  // namespace
 
-CacheSites place_caches(const LightMap& technique, const Scene& scene, const Intersector& intersector,
+CacheSites place_caches(const LightMap& technique, const Scene& scene, const Intersector& intersector, const Bounds& box,
                         std::span<const vec2> texcoord) {
     check(technique, scene, texcoord);
     Map map(technique.texels, scene);
@@ -135,7 +135,7 @@ CacheSites place_caches(const LightMap& technique, const Scene& scene, const Int
     map.drop(technique.most_backs, intersector);
     map.dilate();
 
-    CacheSites grid = place_caches(technique.grid, scene, intersector);
+    CacheSites grid = place_caches(technique.grid, scene, intersector, box);
     const std::size_t texels = map.texels().size(), n = texels + grid.size();
     CacheSites sites{Buffer<vec3>(n), Buffer<vec3>(n), Buffer<float>(n), {}, std::move(grid.grid), false, {}};
     for (std::size_t i = 0; i < texels; ++i) {

@@ -33,9 +33,9 @@ struct LightMap {
                  Param{"grid", &LightMap::grid, "caches for all that has no chart"});
 };
 
-/// texcoord: of every corner of every triangle, in texels; negative where the triangle has no chart. std::invalid_argument for
-/// another number of corners, for texture coordinates that are not finite or beyond the map.
-CacheSites place_caches(const LightMap& technique, const Scene& scene, const Intersector& intersector,
+/// box: what the grid fills. texcoord: of every corner of every triangle, in texels; negative where the triangle has no chart.
+/// std::invalid_argument for another number of corners, for texture coordinates that are not finite or beyond the map.
+CacheSites place_caches(const LightMap& technique, const Scene& scene, const Intersector& intersector, const Bounds& box,
                         std::span<const vec2> texcoord);
 
 }  // namespace interreflect
