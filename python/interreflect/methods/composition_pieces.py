@@ -50,6 +50,8 @@ def precompute(method: IlluminanceComposition, scene: Scene, pieces: Pieces) -> 
         state |= pieces.take("surfel_links", by, lambda: surfel_links(method.link, surfels, pixels, still))
     if not isinstance(method.place_caches, _core.PixelCaches):
         sites = pieces.take("sites", (method.place_caches,), lambda: place_caches(method.place_caches, still, None, scene))
+        if len(surfels) > 0 and len(sites) == 0:
+            raise ValueError(f"place_caches: every cache of {method.place_caches!r} lies in a solid or behind a wall; none is left to be lit")
         state |= {"sites": sites, "links": _links(method, sites, surfels, still, pieces)}
     return state
 
