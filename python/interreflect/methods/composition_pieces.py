@@ -51,7 +51,7 @@ def precompute(method: IlluminanceComposition, scene: Scene, pieces: Pieces) -> 
     if not isinstance(method.place_caches, _core.PixelCaches):
         sites = pieces.take("sites", (method.place_caches,), lambda: place_caches(method.place_caches, still, None, scene))
         if len(surfels) > 0 and len(sites) == 0:
-            raise ValueError(f"place_caches: every cache of {method.place_caches!r} lies in a solid or behind a wall; none is left to be lit")
+            raise ValueError(f"place_caches: every cache of {method.place_caches!r} lies in a solid or behind a wall")
         state |= {"sites": sites, "links": _links(method, sites, surfels, still, pieces)}
     return state
 
