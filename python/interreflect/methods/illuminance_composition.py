@@ -172,7 +172,8 @@ class IlluminanceComposition(Method):
             links = link(self.link, sites, view.state["surfels"], view.scene)
             if links is not None:
                 note(links)
-        return Caches(sites, links), Caches(view.state["surfel_sites"], view.state["surfel_links"])
+        own = Caches(sites, links)
+        return own, Caches(view.state["surfel_sites"], view.state["surfel_links"]) if self.links_surfels else own
 
     def emitted(
         self, view: View, at_pixels: Caches, at_surfels: Caches, profile: Profile
