@@ -16,7 +16,9 @@ from experiments.shared.keep import FOLDER
 __all__ = ["chart", "measure"]
 
 # Every pixel by every light, so that what is measured is the lights' own; rays where shadows are not what is looked at.
-base = ir.methods.VirtualAreaLights(map_size=256, share=ir.EveryPixel())
+base = ir.methods.VirtualAreaLights(
+    map_size=256, share=ir.EveryPixel(), shadow_lights=ir.ImperfectShadowMaps(), filter_shadows=ir.Pcss(), shade_lights=ir.DiskVector()
+)
 rays = base.replace(shadow_lights=ir.TracedVisibility(), filter_shadows=ir.SimpleLookup())
 
 shaded = {
@@ -26,6 +28,7 @@ shaded = {
     "ClampedPoint, not clustered": rays.replace(shade_lights=ir.ClampedPoint(), cluster_lights=None),
     "PointToDisk": rays.replace(shade_lights=ir.PointToDisk()),
     "DiskVector": rays,
+    "MemberBoundedDisk": rays.replace(shade_lights=ir.MemberBoundedDisk()),
     "DiskIntegral": rays.replace(shade_lights=ir.DiskIntegral()),
 }
 

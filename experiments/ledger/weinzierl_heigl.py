@@ -54,6 +54,11 @@ def w2(*records: ir.Records) -> list[Check]:
             "milliseconds of the indirect light (paper: 13 both), off, too bright",
             ", ".join(f"{name}: {row['milliseconds']:.0f}, {row['off']:.1%}, {row['spots']:.2%}" for name, row in found.iterrows()),
         ),
+        # Why: the same lights without what the paper's way to them costs, and where no highlight outweighs all else.
+        told(
+            "off without the brightest hundredth, the glossy box's highlight",
+            ", ".join(f"{name}: {found.loc[name, 'dull_off']:.1%}" for name in (equal, *figure_7.CHANGES)),
+        ),
     ]
 
 
@@ -99,6 +104,19 @@ def w5(records: ir.Records) -> list[Check]:
         told(
             "share of the surface in holes, of what is open closed",
             ", ".join(f"{n}: {r['holes']:.1%}, {r['closed']:.1%}" for n, r in found.iterrows()),
+        ),
+        # Why: the paper does not say how many points it has, and two levels reach as far as four texels.
+        told(
+            "left of the holes with more levels and points",
+            ", ".join(
+                f"{name}: {found.loc[name, 'holes'] / found.loc[start, 'holes']:.0%}"
+                for name, start in {
+                    "three iterations": figure_4.BEFORE,
+                    "four iterations": figure_4.BEFORE,
+                    "400,000 points, two iterations": "400,000 points, before",
+                    "400,000 points, three iterations": "400,000 points, before",
+                }.items()
+            ),
         ),
     ]
 

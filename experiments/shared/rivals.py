@@ -40,12 +40,12 @@ def rivals() -> dict[str, Any]:
     """Each way's knobs that trade time for error; and direct light alone, which no way may lose against."""
     cones, caches = ir.methods.VoxelConeTracing(), ir.methods.ClusteredRadianceCaching()
     lights = ir.methods.VirtualAreaLights(sky=SMOOTH_SKY)
-    simple, pcss = ({"filter_shadows": lookup} for lookup in (ir.SimpleLookup(), ir.Pcss()))
-    rays = {"shadow_lights": ir.TracedVisibility(), **simple}
-    ways = {
-        **{f"{n} lights, rays": (n, rays) for n in (16, 64, 256, 512)},
-        **{f"{n} lights, PCSS": (n, pcss) for n in (64, 256, 512)},
-        "64 lights, simple": (64, simple),
+    maps = {"shadow_lights": ir.ImperfectShadowMaps(), "filter_shadows": ir.Pcss()}
+    ways: dict[str, tuple[int, dict[str, Any]]] = {
+        **{f"{n} lights, rays": (n, {}) for n in (16, 64, 256, 512)},
+        "512 lights, 4 rays each": (512, {"filter_shadows": ir.TracedDisk(samples=4)}),
+        **{f"{n} lights, PCSS": (n, maps) for n in (64, 512)},
+        "64 lights, simple": (64, maps | {"filter_shadows": ir.SimpleLookup()}),
     }
     return {
         BLACK: ir.methods.ConstantAmbient(ambient=0.0, sky=SMOOTH_SKY),
@@ -63,7 +63,6 @@ def rungs() -> list[Mechanism]:
     usual = mechanisms()
     after = [rung.name for rung in usual].index("one diffuse bounce") + 1
     caches = ir.sweep(ir.methods.ClusteredRadianceCaching(), {"distribute.caches": [512, 2048]})
-    rays = ir.methods.VirtualAreaLights(sky=SMOOTH_SKY, shadow_lights=ir.TracedVisibility(), filter_shadows=ir.SimpleLookup())
-    lights = ir.sweep(rays, {"sample_lights.lights": [32, 128, 512]})
+    lights = ir.sweep(ir.methods.VirtualAreaLights(sky=SMOOTH_SKY), {"sample_lights.lights": [32, 128, 512]})
     ours = [Mechanism("one bounce from caches", caches), Mechanism("one bounce from virtual lights", lights)]
     return [*usual[:after], *ours, *usual[after:]]

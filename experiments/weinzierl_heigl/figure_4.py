@@ -19,18 +19,26 @@ WAYS = {
     "disks instead of squares, before": {"shadow_lights__iterations": 0, "shadow_lights__splat": "disk"},
     "disks instead of squares, after": {"shadow_lights__splat": "disk"},
 }
+# How far more levels, and more points, would go.
+FURTHER = {
+    "three iterations": {"shadow_lights__iterations": 3},
+    "four iterations": {"shadow_lights__iterations": 4},
+    "400,000 points, before": {"shadow_lights__iterations": 0, "shadow_lights__points": 400_000},
+    "400,000 points, two iterations": {"shadow_lights__points": 400_000},
+    "400,000 points, three iterations": {"shadow_lights__iterations": 3, "shadow_lights__points": 400_000},
+}
 
 
 def studies() -> Sequence[ir.Study]:
     maps = LightShadowPicture.preset("64 with PCSS")
-    return [study("holes in shadow maps", [replaced(maps, **way) for way in WAYS.values()], size=(512, 512))]
+    return [study("holes in shadow maps", [replaced(maps, **way) for way in (WAYS | FURTHER).values()], size=(512, 512))]
 
 
 def table(records: ir.Records) -> pd.DataFrame:
     """A row per way, over the maps of all lights: `holes`, share of what a map should see that it does not; `closed`, share of what is open
     that it takes for surface; `empty`, share of empty texels."""
     rows = {}
-    for name, record in zip(WAYS, records, strict=True):
+    for name, record in zip(WAYS | FURTHER, records, strict=True):
         counts = record.stages["shadow_picture"]["counts"]
         surface, open_, holes, closed = (counts.get(what, 0) for what in ("surface", "open", "holes", "closed"))
         rows[name] = {
@@ -44,6 +52,6 @@ def table(records: ir.Records) -> pd.DataFrame:
 def chart(records: ir.Records) -> Figure:
     shown = [
         (f"{name}: {row['empty']:.1%} empty;\n{row['holes']:.1%} of the surface open, {row['closed']:.1%} of the openings closed", i)
-        for i, (name, row) in enumerate(table(records).iterrows())
+        for i, (name, row) in enumerate(table(records).loc[list(WAYS)].iterrows())
     ]
     return panels([(name, as_share(picture(records, i))) for name, i in shown], columns=2)

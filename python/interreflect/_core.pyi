@@ -2901,7 +2901,7 @@ class SimpleLookup:
     def __eq__(self, other: object) -> bool:
         ...
 class TracedDisk:
-    """The share of a light's disk that rays reach."""
+    """The share of a light's members, or of its disk, that rays reach."""
     description: ClassVar[dict[str, Any]]
     stages: ClassVar[tuple[str, ...]]
 
@@ -2983,6 +2983,29 @@ class PointToDisk:
         ...
 
     def __eq__(self, other: object) -> bool:
+        ...
+class MemberBoundedDisk:
+    """A light is a disk that brings about as much as sixteen of its members would."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self, *, bound: float=...) -> None:
+        ...
+
+    def replace(self, *, bound: float=...) -> MemberBoundedDisk:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+
+    @property
+    def bound(self) -> float:
         ...
 class DiskVector:
     """A light is a disk, cut at the receiver's horizon; in closed form."""
@@ -3688,7 +3711,7 @@ def light_maps(scene: Scene, size: typing.SupportsInt | typing.SupportsIndex, em
     """
     What all lights of a scene see; `environment`: directional lights that stand for the environment.
     """
-def light_pixels(shade_lights: DiskIntegral | DiskVector | PointToDisk | ClampedPoint | Point, filter_shadows: TracedDisk | SimpleLookup | Pcf | Pcss, share: EveryPixel | Interleaved, lights: VirtualLights, shadows: LightShadows, gbuffer: GBuffer, scene: Scene, seed: typing.SupportsInt | typing.SupportsIndex=0) -> VirtualLight:
+def light_pixels(shade_lights: DiskIntegral | DiskVector | MemberBoundedDisk | PointToDisk | ClampedPoint | Point, filter_shadows: TracedDisk | SimpleLookup | Pcf | Pcss, share: EveryPixel | Interleaved, lights: VirtualLights, shadows: LightShadows, gbuffer: GBuffer, scene: Scene, seed: typing.SupportsInt | typing.SupportsIndex=0) -> VirtualLight:
     """
     All virtual lights at all pixels.
     """

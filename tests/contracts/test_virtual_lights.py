@@ -250,7 +250,8 @@ def test_a_moved_body_takes_its_points_along():
 
 @pytest.mark.parametrize(("changes", "message"), [
     ({"cluster_lights": ir.KMeans(position_weight=0, normal_weight=0, flux_weight=0)}, "at least one of its weights must be above 0"),
-    ({"sample_lights": ir.HaltonLights(lights=2048)}, r"2048 lights' maps of 128\^2 texels are more than 4096\^2"),
+    ({"sample_lights": ir.HaltonLights(lights=2048), "shadow_lights": ir.ImperfectShadowMaps()},
+     r"2048 lights' maps of 128\^2 texels are more than 4096\^2"),
 ])  # fmt: skip
 def test_bad_combinations_are_value_errors(changes, message):
     with pytest.raises(ValueError, match=message):
@@ -274,6 +275,9 @@ def test_products_that_do_not_belong_together_are_value_errors():
     shadows = stages.shadow_lights(technique, lit_by(scene, 3)[0], scene)
     with pytest.raises(ValueError, match="the shadows are those of another number of lights"):
         stages.shade_lights(ir.Point(), seeds, shadows, stages.trace_gbuffer(scene, "view", (8, 8)), scene)
+    maps = lit_by(scene, 4)[1]
+    with pytest.raises(ValueError, match="some lights stand for many texels, and others for one each"):
+        stages.join_lights([seeds, stages.cluster_lights(ir.KMeans(), seeds, maps)])
 
 
 def test_maps_without_texels_or_views_are_value_errors():
@@ -355,6 +359,10 @@ def test_counts_say_what_was_done():
     profile = ir.methods.VirtualAreaLights().render(scene, size=(64, 48)).profile
     assert profile.stages["reflective_shadow_maps"].counts["rays"] == 512**2
     assert profile.stages["cluster_lights"].counts["virtual_lights"] == 128
+    lit = profile.stages["shade_lights"].counts
+    assert 0 < lit["shadow_rays"] <= lit["light_evaluations"] <= 64 * 48 * 8
+    by_maps = ir.methods.VirtualAreaLights(shadow_lights=ir.ImperfectShadowMaps(), filter_shadows=ir.Pcss())
+    profile = by_maps.render(scene, size=(64, 48)).profile
     assert profile.stages["shadow_lights"].counts["surface_points"] == 100_000
     lit = profile.stages["shade_lights"].counts
     assert 0 < lit["light_evaluations"] <= 64 * 48 * 8 and lit["shadow_lookups"] >= 8 * lit["light_evaluations"]

@@ -9,6 +9,7 @@
 #include "math/radical_inverse.h"
 #include "math/rng.h"
 #include "math/sampling.h"
+#include "virtual_lights/cluster/member_places.h"
 #include "virtual_lights/filter/poisson_disk.h"
 #include "virtual_lights/sample/importance_pyramid.h"
 #include "virtual_lights/shade.h"
@@ -224,6 +225,75 @@ TEST(VirtualLights, PoissonDisksKeepTheirDistance) {
         // A hexagonal lattice has 1.9 / sqrt(n).
         EXPECT_GT(least, 0.9f / std::sqrt(static_cast<float>(n))) << n;
     }
+}
+
+/// A map of one surface in the plane y = 0 whose texel (x, z) lies there; the right half sends three times as much on.
+LightMaps flat_map(int side) {
+    ReflectiveShadowMap map;
+    const auto n = static_cast<std::size_t>(side) * side;
+    map.size = side;
+    map.position = Buffer<vec3>(n), map.normal = Buffer<vec3>(n), map.flux = Buffer<vec3>(n), map.offset = Buffer<float>(n);
+    for (int z = 0; z < side; ++z)
+        for (int x = 0; x < side; ++x) {
+            const std::size_t i = static_cast<std::size_t>(z) * side + x;
+            map.position[i] = {x, 0, z}, map.normal[i] = {0, 1, 0}, map.offset[i] = 0.25f;
+            map.flux[i] = vec3(2 * x < side ? 1.0f : 3.0f);
+        }
+    LightMaps maps;
+    maps.maps.push_back(std::move(map));
+    return maps;
+}
+
+TEST(VirtualLights, PlacesAreMembersInProportionToTheirFlux) {
+    constexpr int side = 48;  // of which every fourth texel is looked at, as many of either half
+    const LightMaps maps = flat_map(side);
+    // Cluster 0: the upper half; 1: one texel between those that are looked at; 2: the rest.
+    Buffer<std::uint32_t> cluster(side * side);
+    for (std::uint32_t i = 0; i < side * side; ++i) cluster[i] = i < side * side / 2 ? 0u : 2u;
+    const std::uint32_t alone = 40 * side + 37, centres[] = {10 * side + 10, alone, 44 * side + 44};
+    cluster[alone] = 1;
+    const auto places = member_places(maps, cluster, centres);
+    int bright = 0;
+    for (int k = 0; k < MemberPlaces::count; ++k) {
+        EXPECT_LT(places[0].position[2][k], 24.0f);
+        EXPECT_GE(places[2].position[2][k], 24.0f);
+        EXPECT_EQ(places[1].position[0][k], 37.0f);
+        EXPECT_EQ(places[1].position[2][k], 40.0f);
+        EXPECT_EQ(places[0].position[1][k], 0.25f);  // off the surface
+        EXPECT_EQ(places[0].normal[1][k], 1.0f);
+        bright += places[0].position[0][k] >= side / 2 ? 1 : 0;
+    }
+    EXPECT_EQ(bright, 12);  // three quarters of 16
+}
+
+TEST(VirtualLights, ADiskThatIsHeldToItsMembersBringsWhatTheirFormFactorsSay) {
+    VirtualLights lights = one_disk(0.1f);
+    lights.places = Buffer<MemberPlaces>(1);
+    double expected = 0;
+    for (int k = 0; k < MemberPlaces::count; ++k) {
+        // Apart from each other, one behind the receiver's horizon and one turned away.
+        const vec3 at{-1.0f + 0.2f * static_cast<float>(k), 0, k == 3 ? 1.5f : 0.0f};
+        const vec3 normal = k == 5 ? vec3(0, 0, -1) : vec3(0, 0, 1);
+        for (int i = 0; i < 3; ++i) lights.places[0].position[i][k] = at[i], lights.places[0].normal[i][k] = normal[i];
+        const double square = (at.x - 0.5) * (at.x - 0.5) + 1.0;
+        if (k != 3 && k != 5) expected += 1 / (square * (pi * square + lights.area[0] / 16)) / 16;
+    }
+    const auto receivers = receivers_at({{0.5f, 1}});
+    PerReceiver result;
+    irradiance(MemberBoundedDisk{.bound = 1.0}, DiskLight(lights, 0), *receivers, 1.0f, result);
+    EXPECT_NEAR(result[0], expected, 1e-5 * expected);
+    // Two of sixteen members bring nothing, and others are further away: the disk alone brings more, and by less than the bound.
+    PerReceiver disk, loose, tight;
+    irradiance(DiskVector{}, DiskLight(lights, 0), *receivers, 1.0f, disk);
+    irradiance(MemberBoundedDisk{}, DiskLight(lights, 0), *receivers, 1.0f, loose);
+    irradiance(MemberBoundedDisk{.bound = 1.1}, DiskLight(lights, 0), *receivers, 1.0f, tight);
+    EXPECT_EQ(loose[0], disk[0]);
+    EXPECT_NEAR(tight[0], (disk[0] > expected ? 1.1 : 1 / 1.1) * expected, 1e-5 * expected);
+}
+
+TEST(VirtualLights, ALightWithoutMembersIsItsDisk) {
+    for (const float sideways : {0.0f, 0.4f, 1.5f})
+        EXPECT_EQ(form_factor(MemberBoundedDisk{}, 1, sideways, 0.7f), form_factor(DiskVector{}, 1, sideways, 0.7f));
 }
 
 }  // namespace

@@ -14,7 +14,9 @@ from interreflect.stability.virtual_light_failures import VIRTUAL_LIGHTS
 
 ROWS = {row.name: row for row in VIRTUAL_LIGHTS}
 FEW = ir.HaltonLights(lights=64)
-MAPS = ir.methods.VirtualAreaLights(map_size=128, sample_lights=FEW)
+MAPS = ir.methods.VirtualAreaLights(
+    map_size=128, sample_lights=FEW, shadow_lights=ir.ImperfectShadowMaps(), filter_shadows=ir.Pcss(), shade_lights=ir.DiskVector()
+)
 RAYS = MAPS.replace(shadow_lights=ir.TracedVisibility(), filter_shadows=ir.TracedDisk(samples=4))
 POINTS = RAYS.replace(cluster_lights=None, shade_lights=ir.Point(), share=ir.EveryPixel())
 

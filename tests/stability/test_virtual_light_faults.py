@@ -10,7 +10,9 @@ from faults import is_noticed, overwrite
 
 import interreflect as ir
 
-METHOD = ir.methods.VirtualAreaLights(map_size=256, share=ir.EveryPixel())
+METHOD = ir.methods.VirtualAreaLights(
+    map_size=256, share=ir.EveryPixel(), shadow_lights=ir.ImperfectShadowMaps(), filter_shadows=ir.Pcss(), shade_lights=ir.DiskVector()
+)
 SPHERE = METHOD.replace({"sample_lights.lights": 64, "shadow_lights": ir.TracedVisibility(), "filter_shadows": ir.SimpleLookup()})
 SIZE = (64, 48)
 

@@ -24,10 +24,10 @@ def errors(few, many):
 
 def points(off, spots):
     """128 area lights take as long as 512 points; 1,024 and more take longer, and are right."""
-    index = [*(f"{count} points" for count in figure_7.COUNTS), figure_7.AREA]
-    milliseconds = [10.0, 15.0, 25.0, 50.0, 100.0, 200.0, 55.0]
-    columns = {"milliseconds": milliseconds, "frame": milliseconds, "off": [0.4] * 4 + [0.0] * 2 + [off]}
-    return pd.DataFrame({**columns, "spots": [0.02] * 4 + [0.0] * 2 + [spots]}, index=index)
+    index = [*(f"{count} points" for count in figure_7.COUNTS), *figure_7.CHANGES]
+    milliseconds = [10.0, 15.0, 25.0, 50.0, 100.0, 200.0, 55.0, 55.0, 55.0]  # the last two are told and not judged
+    columns = {"milliseconds": milliseconds, "frame": milliseconds, "off": [0.4] * 4 + [0.0] * 2 + [off, 0.0, 0.0]}
+    return pd.DataFrame({**columns, "dull_off": columns["off"], "spots": [0.02] * 4 + [0.0] * 2 + [spots, 0.0, 0.0]}, index=index)
 
 
 def looked_up(simple, pcss):
@@ -41,8 +41,9 @@ def times(simple, pcss):
 
 
 def holes(before, after):
+    told = dict.fromkeys(figure_4.FURTHER, (0.2, 0.0, 0.2))
     return pd.DataFrame.from_dict(
-        {figure_4.BEFORE: before, figure_4.AFTER: after}, orient="index", columns=["holes", "closed", "empty"]
+        {figure_4.BEFORE: before, figure_4.AFTER: after, **told}, orient="index", columns=["holes", "closed", "empty"]
     )  # fmt: skip
 
 

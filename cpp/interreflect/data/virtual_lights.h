@@ -12,6 +12,14 @@ namespace interreflect {
 
 inline constexpr std::uint32_t no_virtual_light = std::numeric_limits<std::uint32_t>::max();
 
+/// Texels of one light, chosen by their flux: where rays towards them end, off the surface, and their normals. Each stands for as
+/// much flux as the others.
+struct alignas(64) MemberPlaces {
+    static constexpr int count = 16;
+    float position[3][count];  // world space
+    float normal[3][count];    // unit
+};
+
 /// In parallel arrays. Each is a disk that reflects diffusely, and stands for texels of reflective shadow maps, which follow each
 /// other map by map, row by row.
 struct VirtualLights {
@@ -24,11 +32,12 @@ struct VirtualLights {
     Buffer<std::uint32_t>
         cluster;                 // of every texel: its light, or no_virtual_light where the texel sends nothing on; KMeans' alone
     std::vector<int> map_sizes;  // texels on a side
+    Buffer<MemberPlaces> places;  // of every light; none where lights stand for one texel each
     Counts counts;
 
     std::size_t size() const { return position.size(); }
     std::size_t bytes() const {
-        return size() * (3 * sizeof(vec3) + 2 * sizeof(float) + 2 * sizeof(std::uint32_t)) + cluster.bytes();
+        return size() * (3 * sizeof(vec3) + 2 * sizeof(float) + 2 * sizeof(std::uint32_t)) + cluster.bytes() + places.bytes();
     }
 };
 inline VirtualLights make_virtual_lights(std::size_t n) {
@@ -39,6 +48,7 @@ inline VirtualLights make_virtual_lights(std::size_t n) {
             Buffer<float>(n),
             Buffer<std::uint32_t>(n),
             Buffer<std::uint32_t>(n),
+            {},
             {},
             {},
             {}};

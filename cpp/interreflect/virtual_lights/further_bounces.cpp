@@ -21,14 +21,19 @@ LightMaps bounce_maps(const Scene& scene, const Intersector& intersector, const 
 
 VirtualLights join_lights(std::span<const VirtualLights* const> lists) {
     std::size_t n = 0;
-    for (const auto* list : lists) n += list->size();
+    std::size_t places = 0;
+    for (const auto* list : lists) n += list->size(), places += list->places.size();
+    if (places != 0 && places != n)
+        throw std::invalid_argument("join_lights: some lights stand for many texels, and others for one each");
     VirtualLights joined = make_virtual_lights(n);
+    joined.places = Buffer<MemberPlaces>(places);
     std::size_t to = 0;
     for (const auto* list : lists) {
         const auto copy = [to](const auto& from, auto& into) { std::ranges::copy(from, into.begin() + to); };
         copy(list->position, joined.position), copy(list->normal, joined.normal), copy(list->flux, joined.flux);
         copy(list->area, joined.area), copy(list->offset, joined.offset);
         copy(list->texel, joined.texel), copy(list->members, joined.members);
+        if (places > 0) copy(list->places, joined.places);
         to += list->size();
     }
     return joined;

@@ -58,9 +58,15 @@ struct DiskLight {
     std::size_t index;
     vec3 position, normal;
     float area, offset;
+    const MemberPlaces* places;  // null: the light is the disk and nothing else
 
     DiskLight(const VirtualLights& lights, std::size_t i)
-        : index(i), position(lights.position[i]), normal(lights.normal[i]), area(lights.area[i]), offset(lights.offset[i]) {}
+        : index(i),
+          position(lights.position[i]),
+          normal(lights.normal[i]),
+          area(lights.area[i]),
+          offset(lights.offset[i]),
+          places(lights.places.empty() ? nullptr : &lights.places[i]) {}
     float radius() const { return std::sqrt(area / pi); }
     /// Receivers less high above the disk's plane may lie in it, as on the other side of a wall, but for rounding.
     float least_height() const { return 1e-4f * radius() + offset; }

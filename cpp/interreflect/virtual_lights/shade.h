@@ -10,11 +10,12 @@
 #include "virtual_lights/shade/clamped_point.h"
 #include "virtual_lights/shade/disk_integral.h"
 #include "virtual_lights/shade/disk_vector.h"
+#include "virtual_lights/shade/member_bounded_disk.h"
 #include "virtual_lights/shade/point.h"
 #include "virtual_lights/shade/point_to_disk.h"
 
 namespace interreflect {
-using ShadeLights = std::variant<DiskIntegral, DiskVector, PointToDisk, ClampedPoint, Point>;
+using ShadeLights = std::variant<DiskIntegral, DiskVector, MemberBoundedDisk, PointToDisk, ClampedPoint, Point>;
 
 /// Whether a glossy lobe sees a light as a disk, or as a point.
 inline bool is_disk(const ShadeLights& technique) {

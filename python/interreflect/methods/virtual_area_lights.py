@@ -1,4 +1,4 @@
-"""Virtual area lights: lit surface is clustered into disks in the lights' view; the disks light the picture, with filtered shadows."""
+"""Virtual area lights: lit surface is clustered in the lights' view; the clusters light the picture, with shadows by rays or maps."""
 
 from __future__ import annotations
 
@@ -41,11 +41,13 @@ class LightHistory:
 
 @method
 class VirtualAreaLights(Method):
-    """Indirect light of virtual area lights with imperfect shadow maps [Weinzierl-Heigl 2013].
+    """Indirect light of virtual area lights [Weinzierl-Heigl 2013].
 
-    Reflective shadow maps hold what every light of the scene sees. Seeds in them grow to clusters, each a disk that sends on its texels'
-    flux; points on the scene, drawn into a small map of each disk, tell what it sees; each pixel of a block takes its part of the lights.
-    Without `cluster_lights` the seeds are lights themselves. With more than one of `bounces` the disks are lights in turn: a map of
+    Reflective shadow maps hold what every light of the scene sees. Seeds in them grow to clusters, each a light that sends on its texels'
+    flux; each pixel of a block takes its part of the lights. Whether it sees one a ray to a texel of it tells, drawn by the light that it
+    would bring; in the paper, and in its presets, a small map of points that the light's disk sees (`ImperfectShadowMaps`, `Pcss`). These
+    points are shared by all lights: where the scene is large they leave it leaking.
+    Without `cluster_lights` the seeds are lights themselves. With more than one of `bounces` the lights send light on in turn: a map of
     what each sees is sampled and clustered in the same way, into as many lights again.
     """
 
@@ -59,9 +61,9 @@ class VirtualAreaLights(Method):
 
     sample_lights: Any = stage(default=_core.HaltonLights())
     cluster_lights: Any = stage(default=_core.KMeans(), optional=True)
-    shadow_lights: Any = stage(default=_core.ImperfectShadowMaps())
-    filter_shadows: Any = stage(default=_core.Pcss())
-    shade_lights: Any = stage(default=_core.DiskVector())
+    shadow_lights: Any = stage(default=_core.TracedVisibility())
+    filter_shadows: Any = stage(default=_core.TracedDisk(samples=1))
+    shade_lights: Any = stage(default=_core.MemberBoundedDisk())
     share: Any = stage(default=_core.Interleaved(width=4, height=4))
     shade: Any = stage(default=_core.Exact())
     shadow: Any = stage(default=_core.TracedShadows())

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "virtual_lights/cluster/cluster_texels.h"
+#include "virtual_lights/cluster/member_places.h"
 #include "virtual_lights/sample/texel_lights.h"
 
 namespace interreflect {
@@ -63,6 +64,7 @@ class Clustering {
         VirtualLights made = make_virtual_lights(n);
         made.map_sizes = sizes_of(maps_);
         for (std::size_t c = 0; c < n; ++c) set_light(made, c);
+        made.places = member_places(maps_, cluster_, made.texel.span());
         made.cluster = std::move(cluster_);
         made.counts.virtual_lights = n;
         made.counts.stray_texels = strays_;
