@@ -12,7 +12,7 @@ import interreflect as ir
 from experiments.shared.panels import as_light, panels
 from experiments.weinzierl_heigl.pipeline import CLEAN, SMALL, Image, area_lights, compared, difference, indirect
 
-TRUTH = "rays to all of each disk"
+TRUTH = "rays to each light's texels"
 WAYS = {
     "simple lookup": {"filter_shadows": ir.SimpleLookup()},
     "PCSS": {"filter_shadows": ir.Pcss()},

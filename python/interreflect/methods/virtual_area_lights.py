@@ -44,7 +44,7 @@ class VirtualAreaLights(Method):
     """Indirect light of virtual area lights [Weinzierl-Heigl 2013].
 
     Reflective shadow maps hold what every light of the scene sees. Seeds in them grow to clusters, each a light that sends on its texels'
-    flux; each pixel of a block takes its part of the lights. Whether it sees one a ray to a texel of it tells, drawn by the light that it
+    flux; each pixel of a block takes its part of the lights. How much of one it sees rays to its texels tell, drawn by the light that they
     would bring; in the paper, and in its presets, a small map of points that the light's disk sees (`ImperfectShadowMaps`, `Pcss`). These
     points are shared by all lights: where the scene is large they leave it leaking.
     Without `cluster_lights` the seeds are lights themselves. With more than one of `bounces` the lights send light on in turn: a map of
@@ -62,7 +62,7 @@ class VirtualAreaLights(Method):
     sample_lights: Any = stage(default=_core.HaltonLights())
     cluster_lights: Any = stage(default=_core.KMeans(), optional=True)
     shadow_lights: Any = stage(default=_core.TracedVisibility())
-    filter_shadows: Any = stage(default=_core.TracedDisk(samples=1))
+    filter_shadows: Any = stage(default=_core.TracedDisk())
     shade_lights: Any = stage(default=_core.MemberBoundedDisk())
     share: Any = stage(default=_core.Interleaved(width=4, height=4))
     shade: Any = stage(default=_core.Exact())
