@@ -6,8 +6,21 @@ import pandas as pd
 
 import interreflect as ir
 from experiments.jendersie import (
-    bounces, figure_3, figure_6, figure_7, figure_8, figure_9, figure_10, figure_11, more_caches, pulling, resolution, senders, table_2,
-    table_3, table_4,
+    bounces,
+    figure_3,
+    figure_6,
+    figure_7,
+    figure_8,
+    figure_9,
+    figure_10,
+    figure_11,
+    more_caches,
+    pulling,
+    resolution,
+    senders,
+    table_2,
+    table_3,
+    table_4,
 )  # fmt: skip
 from experiments.ledger.claim import Check, Claim, above, below, told
 

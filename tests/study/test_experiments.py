@@ -10,10 +10,12 @@ from experiments import head_to_head
 from experiments import where_do_caches_break as caches
 from experiments import where_do_virtual_lights_break as virtual
 from experiments import where_do_voxels_break as where
+from experiments import where_does_illuminance_composition_break as composition
 from experiments.figures import draw
 from matplotlib.figure import Figure
 
 import interreflect as ir
+from interreflect.stability.composition_failures import COMPOSITION
 
 FOLDER = Path(__file__).parents[2] / "experiments"
 FILES = sorted(path for path in FOLDER.glob("*.py") if path.stem not in ("__init__", "figures"))
@@ -136,6 +138,18 @@ def test_break_points_of_virtual_lights_cover_every_shade_and_filter():
     for stage, ways in (("shade_lights", virtual.shaded), ("filter_shadows", virtual.filtered)):
         assert {m.knobs()[stage] for m in ways.values()} == {technique.__name__ for technique in ir.techniques(stage)}
     assert {name for _, rows in virtual.ATLASES.values() for name in rows} <= {row.name for row in ir.stability.failures}
+
+
+def test_break_points_of_illuminance_composition_are_measured_for_caches(tmp_path):
+    cells = "bleeding through a cell"
+    found = composition.measure(tmp_path, {"placed": ({"a map of 64": composition.base}, [cells])}, sweep=2, bisections=0)
+    assert found["placed"].cell("a map of 64", cells).outcome == "breaks"
+    composition.chart(found).canvas.draw()
+
+
+def test_break_points_of_illuminance_composition_name_failures_that_exist():
+    named = {name for _, rows in composition.ATLASES.values() for name in rows}
+    assert {row.name for row in COMPOSITION} <= named <= {row.name for row in ir.stability.failures}
 
 
 @pytest.fixture(scope="module")

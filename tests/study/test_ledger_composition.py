@@ -3,8 +3,21 @@
 import pandas as pd
 import pytest
 from experiments.jendersie import (
-    bounces, figure_3, figure_6, figure_7, figure_8, figure_9, figure_10, figure_11, more_caches, pulling, resolution, senders, table_2,
-    table_3, table_4,
+    bounces,
+    figure_3,
+    figure_6,
+    figure_7,
+    figure_8,
+    figure_9,
+    figure_10,
+    figure_11,
+    more_caches,
+    pulling,
+    resolution,
+    senders,
+    table_2,
+    table_3,
+    table_4,
 )  # fmt: skip
 from experiments.ledger import jendersie as ledger
 from experiments.ledger.claim import DOES_NOT_HOLD, HOLDS, IN_PART, Claim, judge
@@ -79,7 +92,7 @@ def cells(links_matter, surfels_matter, time):
 
 def sizes(caches, shading):
     """Milliseconds at the largest size over those at the smallest."""
-    steps = {step: (1.0, 1.0, caches) for step in resolution.STEPS} | {"shading with indirect light": (1.0, 4.0, shading)}
+    steps = dict.fromkeys(resolution.STEPS, (1.0, 1.0, caches)) | {"shading with indirect light": (1.0, 4.0, shading)}
     columns = {(f"{w} x {h}", "ours"): [row[i] for row in steps.values()] for i, (w, h) in enumerate(resolution.SIZES)}
     return pd.DataFrame(columns, index=list(steps))
 

@@ -2,6 +2,7 @@
 
 from interreflect.stability.break_points import Atlas, atlas
 from interreflect.stability.cache_failures import CACHES
+from interreflect.stability.composition_failures import COMPOSITION
 from interreflect.stability.failure import Failure, Reading
 from interreflect.stability.invariants import Invariance, invariance
 from interreflect.stability.moving_failures import MOVING
@@ -10,6 +11,6 @@ from interreflect.stability.temporal import Played, motion
 from interreflect.stability.virtual_light_failures import VIRTUAL_LIGHTS
 from interreflect.stability.voxel_failures import VOXELS
 
-failures: tuple[Failure, ...] = (*VOXELS, *CACHES, *VIRTUAL_LIGHTS, *STILL, *MOVING)
+failures: tuple[Failure, ...] = (*VOXELS, *CACHES, *VIRTUAL_LIGHTS, *COMPOSITION, *STILL, *MOVING)
 
 __all__ = ["Atlas", "Failure", "Invariance", "Played", "Reading", "atlas", "failures", "invariance", "motion"]
