@@ -22,7 +22,7 @@ WAYS = {
 
 def studies() -> Sequence[ir.Study]:
     """Clusters and caches are not what is looked at: few, quickly made."""
-    plain = CompositionPicture(show="surfels", cluster_surfels=ir.KdTree(), place_caches=ir.CacheGrid(nx=1, ny=1, nz=1))
+    plain = CompositionPicture(show="surfels", cluster_surfels=ir.KdTree(), place_caches=ir.CacheGrid(nx=1, ny=1, nz=1, most_backs=1.0))
     few = replaced(plain, link__links=1, link__bands=1)
     return [study("placed surfels", [few.replace(place_surfels=way) for way in WAYS.values()], size=(960, 540))]
 

@@ -50,7 +50,9 @@ def rivals(ours, cones):
 
 
 def lamp(flip, energy):
-    return pd.Series({"off": 0.1, "flip": flip, "energy": energy, "caches": 1e4, "milliseconds": 50.0})
+    row = {"off": 0.1, "flip": flip, "energy": energy, "caches": 1e4, "milliseconds": 50.0}
+    right = {**row, "flip": 0.0, "energy": 1.0}  # of the way that is not the paper's, which no verdict may follow
+    return pd.DataFrame.from_dict(dict(zip(figure_7.WAYS, (row, right), strict=True)), orient="index")
 
 
 def lobes(cut=(0.5, 0.4, 0.3, 0.2, 0.1, 0.095, 0.09), lost=0.01, poor=0.05, cones=1.05, memory=(92.0, 30.0)):
@@ -211,7 +213,7 @@ def test_surfels_of_a_grid_are_as_far_apart_as_a_grid_says():
     from experiments.shared.composition_picture import MILLIONTHS, CompositionPicture
 
     way = CompositionPicture(place_surfels=ir.RelaxedSurfels(surfels=2048), cluster_surfels=ir.KdTree())
-    few = {"place_caches": ir.CacheGrid(nx=1, ny=1, nz=1)}
+    few = {"place_caches": ir.CacheGrid(nx=1, ny=1, nz=1, most_backs=1.0)}
     frame = way.replace(few).replace({"link.links": 1, "link.bands": 1, "link.near_rays": 0}).render(ir.scenes.lone_ball(), size=(64, 48))
     counts = frame.profile.stages["picture"].counts
     assert 0.7 < counts["spacing_mean"] / MILLIONTHS < 1.0
