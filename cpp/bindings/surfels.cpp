@@ -17,6 +17,8 @@
 #include "surfels/pull.h"
 #include "surfels/sites.h"
 #include "surfels/surfel_pixels.h"
+#include "surfels/used_caches.h"
+#include "surfels/window.h"
 
 namespace interreflect::bindings {
 namespace {
@@ -271,11 +273,28 @@ void bind_run_time(py::module_& m) {
         "The sum of the surfels' flux under every node, or the mean of their radiosity.");
     m.def(
         "light_caches",
-        [](const CacheLinks& links, const NodeLight& light, int bands, int chrominance_bands) {
-            return run([&] { return std::make_shared<LightCaches>(light_caches(links, light, {bands, chrominance_bands})); });
+        [](const CacheLinks& links, const NodeLight& light, int bands, int chrominance_bands, const py::object& used) {
+            std::span<const std::uint8_t> marks;
+            if (!used.is_none()) {
+                const auto array = exact_array<std::uint8_t>(used, "used");
+                marks = {array.data(), static_cast<std::size_t>(array.size())};
+            }
+            return run([&] {
+                return std::make_shared<LightCaches>(light_caches(links, light, {bands, chrominance_bands}, marks));
+            });
         },
-        py::arg("links"), py::arg("light"), py::arg("bands"), py::arg("chrominance_bands") = 0,
-        "The sum over each cache's links.");
+        py::arg("links"), py::arg("light"), py::arg("bands"), py::arg("chrominance_bands") = 0, py::arg("used") = py::none(),
+        "The sum over each cache's links. used: (caches,) uint8, 0 where nothing reads a cache and it may stay black.");
+    m.def(
+        "window_caches", [](LightCaches& caches, const std::string& window) { run([&] { window_caches(caches, window); }); },
+        py::arg("caches"), py::arg("window"), "Weakens the higher bands of caches' light, in place: none, hanning or lanczos.");
+    m.def(
+        "used_caches",
+        [](const CacheSites& sites, const GBuffer& gbuffer, const BoundScene& s) {
+            const Buffer<std::uint8_t> used = run([&] { return used_caches(sites, gbuffer, s.scene); });
+            return py::array_t<std::uint8_t>(static_cast<py::ssize_t>(used.size()), used.data());
+        },
+        py::arg("sites"), py::arg("gbuffer"), py::arg("scene"), "(caches,): 1 where some pixel reads the cache, else 0.");
     m.def(
         "sample_caches",
         [](const AllSurfels& technique, const CacheSites& sites, const ClusteredSurfels& surfels, const NodeLight& light,

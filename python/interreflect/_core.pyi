@@ -3590,10 +3590,10 @@ class SphericalHarmonicLobes:
     description: ClassVar[dict[str, Any]]
     stages: ClassVar[tuple[str, ...]]
 
-    def __init__(self, *, chrominance_bands: int=...) -> None:
+    def __init__(self, *, chrominance_bands: int=..., window: str=...) -> None:
         ...
 
-    def replace(self, *, chrominance_bands: int=...) -> SphericalHarmonicLobes:
+    def replace(self, *, chrominance_bands: int=..., window: str=...) -> SphericalHarmonicLobes:
         ...
 
     def asdict(self) -> dict[str, Any]:
@@ -3607,6 +3607,10 @@ class SphericalHarmonicLobes:
 
     @property
     def chrominance_bands(self) -> int:
+        ...
+
+    @property
+    def window(self) -> str:
         ...
 class DirectLinks:
     """The BRDF itself over all links of the caches about a pixel."""
@@ -3703,9 +3707,9 @@ def lamp_shadow(technique: ShadowMap, scene: Scene, gbuffer: GBuffer, seed: typi
     """
     What pixels reflect of point, spot and directional lights alone: emitters come through links.
     """
-def light_caches(links: CacheLinks, light: NodeLight, bands: typing.SupportsInt | typing.SupportsIndex, chrominance_bands: typing.SupportsInt | typing.SupportsIndex=0) -> LightCaches:
+def light_caches(links: CacheLinks, light: NodeLight, bands: typing.SupportsInt | typing.SupportsIndex, chrominance_bands: typing.SupportsInt | typing.SupportsIndex=0, used: typing.Any | None=None) -> LightCaches:
     """
-    The sum over each cache's links.
+    The sum over each cache's links. used: (caches,) uint8, 0 where nothing reads a cache and it may stay black.
     """
 def light_maps(scene: Scene, size: typing.SupportsInt | typing.SupportsIndex, emitter_views: typing.SupportsInt | typing.SupportsIndex, environment: collections.abc.Sequence[DirectionalLight]) -> LightMaps:
     """
@@ -3886,6 +3890,10 @@ def triad_bandwidth(repeats: typing.SupportsInt | typing.SupportsIndex, mebibyte
     """
     GB/s of a = b + s c over arrays of `mebibytes` each, best of `repeats`.
     """
+def used_caches(sites: CacheSites, gbuffer: GBuffer, scene: Scene) -> numpy.typing.NDArray[numpy.uint8]:
+    """
+    (caches,): 1 where some pixel reads the cache, else 0.
+    """
 def vector_bytes() -> int:
     """
     Bytes of the widest vectors of this machine.
@@ -3893,4 +3901,8 @@ def vector_bytes() -> int:
 def voxelize(technique: ExactOverlap | SurfaceSampling | Rasterization | Tessellation, scene: Scene, domain: Domain, body: typing.SupportsInt | typing.SupportsIndex | None=None, pose: typing.Any | None=None) -> VoxelGrid:
     """
     The voxels of the scene's surface; or of one body in its own space, which `pose` brings to the world (0: of what stands still).
+    """
+def window_caches(caches: LightCaches, window: str) -> None:
+    """
+    Weakens the higher bands of caches' light, in place: none, hanning or lanczos.
     """

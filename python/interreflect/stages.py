@@ -312,6 +312,11 @@ def pull(surfels: _core.ClusteredSurfels, radiance: NDArray[np.float32], radiosi
     return _core.pull(surfels, radiance, radiosity)
 
 
+def used_caches(sites: _core.CacheSites, gbuffer: _core.GBuffer, scene: Scene) -> NDArray[np.uint8]:
+    """(caches,): 1 where some pixel interpolates from the cache, else 0."""
+    return _core.used_caches(sites, gbuffer, scene.core)
+
+
 def light_caches(
     technique: Any,
     links: _core.CacheLinks | None,
@@ -321,11 +326,18 @@ def light_caches(
     scene: Scene,
     chrominance_bands: int = 0,
     seed: int = 0,
+    window: str = "none",
+    used: NDArray[np.uint8] | None = None,
 ) -> _core.LightCaches:
-    """Incident radiance of every cache, in spherical harmonics: the sum over its links, or for AllSurfels over surfels themselves."""
+    """Incident radiance of every cache, in spherical harmonics: the sum over its links, or for AllSurfels over surfels themselves.
+
+    window: none, hanning or lanczos, over the bands. used: caches that anything reads (`used_caches`); the others may stay black."""
     if links is None:
-        return _core.sample_caches(technique, sites, surfels, light, chrominance_bands, scene.core, seed)
-    return _core.light_caches(links, light, technique.bands, chrominance_bands)
+        made = _core.sample_caches(technique, sites, surfels, light, chrominance_bands, scene.core, seed)
+    else:
+        made = _core.light_caches(links, light, technique.bands, chrominance_bands, used)
+    _core.window_caches(made, window)
+    return made
 
 
 def evaluate(

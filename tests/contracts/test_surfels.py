@@ -95,6 +95,37 @@ def test_chrominance_in_all_bands_is_colour_and_in_fewer_leaves_luma_as_it_is():
     assert fewer[:, 16:20] == pytest.approx((red - blue)[:, :4] / 2, rel=1e-4, abs=1e-6)
 
 
+def test_windows_scale_every_band_by_their_formula():
+    """[Sloan 2008]: hanning (1 + cos(pi l / w)) / 2, lanczos sin(pi l / w) / (pi l / w), at w bands."""
+    band = np.repeat(np.arange(4), 2 * np.arange(4) + 1)
+    of = {"none": np.ones(16), "hanning": (1 + np.cos(np.pi * band / 4)) / 2, "lanczos": np.sinc(band / 4)}
+    links, sent = stages.link(ir.ShLinks(links=64), sites(), tree(), cornell_box()), stages.pull(tree(), radiance())
+
+    def coefficients(window, chrominance_bands):
+        made = stages.light_caches(ir.ShLinks(), links, sites(), tree(), sent, cornell_box(), chrominance_bands, window=window)
+        return np.asarray(made.coefficients)
+
+    for chrominance in (4, 2):
+        plain = coefficients("none", chrominance)
+        for window, scale in of.items():
+            all_three = np.concatenate([scale, scale[: chrominance**2], scale[: chrominance**2]])
+            assert coefficients(window, chrominance) == pytest.approx(plain * all_three, rel=1e-3, abs=1e-3 * float(np.abs(plain).max()))
+
+
+def test_caches_that_no_pixel_reads_may_stay_black_and_no_pixel_sees_it():
+    grid = METHOD.replace(place_caches=ir.CacheGrid(nx=6, ny=6, nz=6))
+    for changes in ({}, {"link": ir.RuntimeProjection(links=48)}, {"bounces": 3}, {"emitters": "links"}):
+        every, read = (grid.replace({**changes, "lit_caches": way}).render(cornell_box(), size=SIZE) for way in ("all", "read"))
+        assert (every.image == read.image).all()
+        lit = [frame.profile.stages["light_caches"].counts["links"] for frame in (every, read)]
+        assert lit[1] < lit[0], changes
+    used = stages.used_caches(sites(), ir.trace_gbuffer(cornell_box(), None, SIZE), cornell_box())
+    assert 0 < used.sum() < len(used)
+    with pytest.raises(ValueError, match=r"`used` tells of 3 caches, the links are of"):
+        links = stages.link(ir.ShLinks(links=8), sites(), tree(), cornell_box())
+        _core.light_caches(links, stages.pull(tree(), radiance()), 4, 0, np.ones(3, np.uint8))
+
+
 def test_lobes_in_spherical_harmonics_come_to_the_links_themselves_with_the_bands():
     scene = ir.scenes.cornell_box(box="glossy")
     prepared = METHOD.prepare(scene)
@@ -193,6 +224,8 @@ def test_light_does_not_come_through_a_sheet_with_two_sides():
     ({"evaluate": ir.SphericalHarmonicLobes(chrominance_bands=5)}, ValueError, "the bands of the links"),
     ({"sky": ir.ConeSky()}, ValueError, "ConeSky needs cones"),
     ({"evaluate": ir.DirectLinks(), "link": ir.AllSurfels()}, ValueError, "AllSurfels stores none"),
+    ({"lit_caches": "read", "bounces": None}, ValueError, "needs links that are stored, and a number of bounces"),
+    ({"lit_caches": "read", "link": ir.AllSurfels()}, ValueError, "needs links that are stored, and a number of bounces"),
     ({"emitters": "cones"}, ValueError, "emitters must be one of rays, links"),
     ({"link": ir.ShLinks(bands=4), "evaluate": ir.SphericalHarmonicLobes(chrominance_bands=6)}, ValueError, "the bands of the links"),
     ({"shadow": ir.VoxelCones()}, ValueError, "VoxelCones needs voxels"),

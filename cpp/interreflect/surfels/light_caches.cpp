@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "math/parallel.h"
 #include "surfels/light_kernel.h"
@@ -53,19 +54,35 @@ void store_cache(LightCaches& caches, std::size_t cache, const float* red, const
     }
 }
 
-LightCaches light_caches(const CacheLinks& links, const NodeLight& light, const CacheFormat& format) {
+LightCaches light_caches(const CacheLinks& links, const NodeLight& light, const CacheFormat& format,
+                         std::span<const std::uint8_t> used) {
     LightCaches made = make_light_caches(links.caches, format);
     check_links(links, light);
     if (links.kind == CacheLinks::Kind::projected && links.bands < format.bands)
         throw std::invalid_argument("light_caches: links of " + std::to_string(links.bands) + " bands for caches of " +
                                     std::to_string(format.bands));
+    if (!used.empty() && used.size() != links.caches)
+        throw std::invalid_argument("light_caches: `used` tells of " + std::to_string(used.size()) +
+                                    " caches, the links are of " + std::to_string(links.caches));
+    const auto light_run = links.kind == CacheLinks::Kind::projected ? light_projected : light_cones;
+    std::vector<std::uint64_t> lit((links.caches + caches_a_block - 1) / caches_a_block);
     parallel_blocks(links.caches, caches_a_block, [&](std::size_t begin, std::size_t end) {
-        if (links.kind == CacheLinks::Kind::projected)
-            light_projected(links, light, begin, end, made);
-        else
-            light_cones(links, light, begin, end, made);
+        const auto is_read = [&](std::size_t cache) { return used.empty() || used[cache] != 0; };
+        for (std::size_t first = begin; first < end;) {
+            std::size_t last = first;
+            while (last < end && is_read(last) == is_read(first)) ++last;
+            if (is_read(first)) {
+                light_run(links, light, first, last, made);
+                lit[begin / caches_a_block] += last - first;
+            } else {
+                const auto stride = static_cast<std::size_t>(made.stride());
+                std::fill(made.coefficients.data() + first * stride, made.coefficients.data() + last * stride, 0.0f);
+            }
+            first = last;
+        }
     });
-    made.counts.links = links.caches * static_cast<std::uint64_t>(links.per_cache);
+    const auto each = static_cast<std::uint64_t>(links.per_cache);
+    for (const std::uint64_t caches : lit) made.counts.links += caches * each;
     return made;
 }
 

@@ -1,5 +1,8 @@
 /// Light caches: how much radiance comes to every cache, from where?
 #pragma once
+#include <cstdint>
+#include <span>
+
 #include "data/light_caches.h"
 #include "data/surfels.h"
 
@@ -13,8 +16,9 @@ struct CacheFormat {
 
 /// The sum over each cache's links, times what the nodes send on [Jendersie et al. 2016, equation 3]. Projected links have the
 /// format's bands or more; cones any. std::invalid_argument where links and light do not belong together, or where links have too
-/// few bands.
-LightCaches light_caches(const CacheLinks& links, const NodeLight& light, const CacheFormat& format);
+/// few bands. used: of every cache, whether anything reads it; one that nothing reads stays black; empty: all are read.
+LightCaches light_caches(const CacheLinks& links, const NodeLight& light, const CacheFormat& format,
+                         std::span<const std::uint8_t> used = {});
 
 /// std::invalid_argument where the links are of another tree, or of flux where the light is radiosity.
 void check_links(const CacheLinks& links, const NodeLight& light);

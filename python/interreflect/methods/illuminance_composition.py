@@ -31,6 +31,7 @@ from interreflect.stages import (
     sky,
     surfel_pixels,
     trace_gbuffer,
+    used_caches,
 )
 
 # Without history all bounces are summed up until the surfels' light grows by less than this share of itself.
@@ -44,6 +45,7 @@ class Caches:
 
     sites: _core.CacheSites
     links: _core.CacheLinks | None
+    used: NDArray[np.uint8] | None = None  # which of them the frame's pixels read; None: all of them
 
 
 @dataclass(frozen=True)
@@ -73,6 +75,10 @@ class IlluminanceComposition(Method):
         doc="how the light of emitting surfaces comes to pixels and surfels: by the shadow stage, or from their surfels through links",
     )  # fmt: skip
 
+    lit_caches: str = knob(
+        default="all", choices=("all", "read"), doc="all caches, or those alone that the frame's pixels, or surfels of another bounce, read"
+    )  # fmt: skip
+
     place_surfels: Any = stage(default=_core.HaltonSurfels())
     cluster_surfels: Any = stage(default=_core.Agglomerative())
     place_caches: Any = stage(default=_core.LightMap())
@@ -90,6 +96,8 @@ class IlluminanceComposition(Method):
             raise ValueError("IlluminanceComposition.sky: ConeSky needs cones, and surfels have none")
         if isinstance(self.shadow, _core.VoxelCones):
             raise ValueError("IlluminanceComposition.shadow: VoxelCones needs voxels, and surfels have none")
+        if self.lit_caches == "read" and (self.bounces is None or isinstance(self.link, _core.AllSurfels)):
+            raise ValueError("IlluminanceComposition.lit_caches: 'read' needs links that are stored, and a number of bounces")
         if isinstance(self.evaluate, _core.DirectLinks) and isinstance(self.link, _core.AllSurfels):
             raise ValueError("IlluminanceComposition.evaluate: DirectLinks needs links, and AllSurfels stores none")
         if self.chrominance_bands > self.link.bands:
@@ -137,6 +145,9 @@ class IlluminanceComposition(Method):
             gbuffer = note(trace_gbuffer(scene, view.camera, view.size, self.shade))
         view = self.with_emission(view, profile)
         at_pixels, at_surfels = self.linked(view, gbuffer, profile)
+        if self.lit_caches == "read":
+            with profile.stage("used_caches"):
+                at_pixels = replace(at_pixels, used=used_caches(at_pixels.sites, gbuffer, scene))
         emitted = self.emitted(view, at_pixels, at_surfels, profile)
         arrived, kept = self.light(view, at_pixels, at_surfels, emitted, profile)
         with profile.stage("evaluate") as note:
@@ -182,8 +193,9 @@ class IlluminanceComposition(Method):
         if self.emitters == "rays":
             return None
         sent = np.asarray(view.state["pixels"].emission)
-        to_pixels = self.pass_on(view, sent, at_pixels, 0, profile)
-        return to_pixels, to_pixels if at_surfels is at_pixels else self.pass_on(view, sent, at_surfels, 0, profile)
+        to_surfels = self.pass_on(view, sent, at_surfels, 0, profile)
+        same = at_surfels.sites is at_pixels.sites
+        return to_surfels if same else self.pass_on(view, sent, at_pixels, 0, profile), to_surfels
 
     def light(
         self, view: View, at_pixels: Caches, at_surfels: Caches, emitted: tuple[CacheLight, CacheLight] | None, profile: Profile
@@ -218,7 +230,12 @@ class IlluminanceComposition(Method):
             return CacheLight(None, patches)
         with profile.stage("light_caches") as note:
             seed = (view.seed + bounce) % 2**32
-            caches = note(light_caches(self.link, to.links, to.sites, surfels, patches, view.scene, self.chrominance_bands, seed))
+            window = getattr(self.evaluate, "window", "none")
+            caches = note(
+                light_caches(
+                    self.link, to.links, to.sites, surfels, patches, view.scene, self.chrominance_bands, seed, window, to.used
+                )
+            )  # fmt: skip
         return CacheLight(caches, patches)
 
     def gathered(self, light: CacheLight, caches: Caches, gbuffer: _core.GBuffer, scene: Scene) -> _core.SurfelLight:

@@ -1,4 +1,6 @@
 #pragma once
+#include <string>
+
 #include "data/gbuffer.h"
 #include "data/light_caches.h"
 #include "data/scene.h"
@@ -13,13 +15,16 @@ namespace interreflect {
 /// Where the sum is negative, the pixel is black.
 struct SphericalHarmonicLobes {
     int chrominance_bands = 0;
+    std::string window = "none";
 
     bool operator==(const SphericalHarmonicLobes&) const = default;
-    static constexpr auto description =
-        describe("SphericalHarmonicLobes", "Diffuse and glossy lobes in spherical harmonics, against the caches' radiance.",
-                 Source{"Jendersie et al. 2016", "3.2, 4.8, appendix B"},
-                 Param{"chrominance_bands", &SphericalHarmonicLobes::chrominance_bands,
-                       "of the caches' chrominance; 0: as many as of their luma", Unit::none, between(0, 8)});
+    static constexpr auto description = describe(
+        "SphericalHarmonicLobes", "Diffuse and glossy lobes in spherical harmonics, against the caches' radiance.",
+        Source{"Jendersie et al. 2016", "3.2, 4.8, appendix B"},
+        Param{"chrominance_bands", &SphericalHarmonicLobes::chrominance_bands,
+              "of the caches' chrominance; 0: as many as of their luma", Unit::none, between(0, 8)},
+        Param{"window", &SphericalHarmonicLobes::window, "that weakens the caches' higher bands, so that small lights ring less",
+              Unit::none, one_of("none|hanning|lanczos")});
 };
 
 SurfelLight evaluate(const SphericalHarmonicLobes& technique, const LightCaches& caches, const CacheSites& sites,
