@@ -45,6 +45,12 @@ py::array_t<Scalar> view(const Scalar* data, std::vector<py::ssize_t> shape, py:
     py::detail::array_proxy(array.ptr())->flags &= ~py::detail::npy_api::NPY_ARRAY_WRITEABLE_;
     return array;
 }
+/// The same of half floats.
+inline py::array halves(const std::uint16_t* data, std::vector<py::ssize_t> shape, py::handle owner) {
+    py::array array(py::dtype("e"), std::move(shape), data, owner);
+    py::detail::array_proxy(array.ptr())->flags &= ~py::detail::npy_api::NPY_ARRAY_WRITEABLE_;
+    return array;
+}
 /// (n, components) of n vectors.
 template <class T>
 py::array_t<float> vectors(const Buffer<T>& data, py::handle owner) {

@@ -123,6 +123,26 @@ void bind_direct(py::module_& m) {
     bind_stage(m, "sky", "What pixels reflect of the environment.", true, static_cast<const Sky*>(nullptr));
     bind_shadow<TracedShadows>(m);
     bind_shadow<ShadowMap>(m);
+    py::class_<ShadowMaps, std::shared_ptr<ShadowMaps>>(m, "ShadowMaps",
+                                                        "Depth seen from all point, spot and directional lights.")
+        .def_readonly("counts", &ShadowMaps::counts)
+        .def_property_readonly("bytes", &ShadowMaps::bytes);
+    m.def(
+        "shadow_maps",
+        [](const ShadowMap& technique, const BoundScene& s) {
+            return run([&] { return std::make_shared<ShadowMaps>(shadow_maps(technique, s.scene, *s.intersector)); });
+        },
+        py::arg("technique"), py::arg("scene"), "Depth seen from every light, to be shared by all that it lights.");
+    m.def(
+        "shadow",
+        [](const ShadowMap& technique, const BoundScene& s, const GBuffer& g, const ShadowMaps& maps,
+           std::uint32_t seed) -> SharedLight {
+            return run([&] {
+                return std::make_shared<DirectLight>(shadow(technique, maps, s.scene, *s.intersector, *s.lights, g, seed));
+            });
+        },
+        py::arg("technique"), py::arg("scene"), py::arg("gbuffer"), py::arg("maps"), py::arg("seed") = 0,
+        "By maps that are there.");
     m.def("cone_shadow", &cone_shadow, py::arg("technique"), py::arg("scene"), py::arg("gbuffer"), py::arg("pyramids"),
           py::arg("seed") = 0, "VoxelCones through the pyramids of one scene's voxels, one or more.");
     m.def(

@@ -126,6 +126,7 @@ std::shared_ptr<Product> restored(const py::dict& stored, const Context&... cont
     auto made = std::make_shared<Product>();
     each_field(*made, Restore{stored});
     check_stored(*made, context...);
+    if constexpr (requires { complete(*made, context...); }) complete(*made, context...);
     return made;
 }
 

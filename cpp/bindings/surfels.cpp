@@ -112,11 +112,15 @@ void bind_links(py::module_& m) {
             "coefficients",
             [](const py::object& self) {
                 const auto& caches = self.cast<const LightCaches&>();
-                return view(caches.coefficients.data(),
-                            {static_cast<py::ssize_t>(caches.caches), static_cast<py::ssize_t>(caches.stride())}, self);
+                return halves(caches.coefficients.data(),
+                              {static_cast<py::ssize_t>(caches.caches), static_cast<py::ssize_t>(caches.stride())}, self);
             },
-            "(caches, bands^2 + 2 chrominance_bands^2): of red, green and blue, or where chrominance has fewer bands of Y, Co "
-            "and Cg.")
+            "(caches, bands^2 + 2 chrominance_bands^2) float16, multiples of `unit`: of red, green and blue, or where "
+            "chrominance "
+            "has fewer bands of Y, Co and Cg.")
+        .def_property_readonly(
+            "unit", [](const py::object& self) { return numbers(self.cast<const LightCaches&>().unit, self); },
+            "(caches,): what each cache's coefficients are multiples of, a power of two.")
         .def_readonly("counts", &LightCaches::counts)
         .def_property_readonly("bytes", &LightCaches::bytes);
     py::class_<SurfelLight, std::shared_ptr<SurfelLight>>(m, "SurfelLight", "What pixels get from caches of surfels' light.")
@@ -239,16 +243,22 @@ void bind_precomputation(py::module_& m) {
     bind_link(static_cast<const RuntimeProjection*>(nullptr));
 }
 
+/// A scene's point, spot and directional lights alone.
+Scene lamps_of(const Scene& scene) {
+    Scene lamps;
+    lamps.geometry = scene.geometry;
+    lamps.point_lights = scene.point_lights, lamps.spot_lights = scene.spot_lights;
+    lamps.directional_lights = scene.directional_lights;
+    return lamps;
+}
+
 template <class Technique>
 void bind_lamp_shadow(py::module_& m) {
     m.def(
         "lamp_shadow",
         [](const Technique& technique, const BoundScene& s, const GBuffer& g, std::uint32_t seed) {
             return run([&] {
-                Scene lamps;
-                lamps.geometry = s.scene.geometry;
-                lamps.point_lights = s.scene.point_lights, lamps.spot_lights = s.scene.spot_lights;
-                lamps.directional_lights = s.scene.directional_lights;
+                const Scene lamps = lamps_of(s.scene);
                 return std::make_shared<DirectLight>(shadow(technique, s.scene, *s.intersector, LightSampler(lamps), g, seed));
             });
         },
@@ -259,6 +269,17 @@ void bind_lamp_shadow(py::module_& m) {
 void bind_run_time(py::module_& m) {
     bind_lamp_shadow<TracedShadows>(m);
     bind_lamp_shadow<ShadowMap>(m);
+    m.def(
+        "lamp_shadow",
+        [](const ShadowMap& technique, const BoundScene& s, const GBuffer& g, const ShadowMaps& maps, std::uint32_t seed) {
+            return run([&] {
+                const Scene lamps = lamps_of(s.scene);
+                return std::make_shared<DirectLight>(
+                    shadow(technique, maps, s.scene, *s.intersector, LightSampler(lamps), g, seed));
+            });
+        },
+        py::arg("technique"), py::arg("scene"), py::arg("gbuffer"), py::arg("maps"), py::arg("seed") = 0,
+        "By maps that are there.");
     m.def(
         "pull",
         [](const ClusteredSurfels& surfels, const py::object& radiance, bool radiosity) {
@@ -290,11 +311,11 @@ void bind_run_time(py::module_& m) {
         py::arg("caches"), py::arg("window"), "Weakens the higher bands of caches' light, in place: none, hanning or lanczos.");
     m.def(
         "used_caches",
-        [](const CacheSites& sites, const GBuffer& gbuffer, const BoundScene& s) {
-            const Buffer<std::uint8_t> used = run([&] { return used_caches(sites, gbuffer, s.scene); });
+        [](const CacheSites& sites, const GBuffer& gbuffer) {
+            const Buffer<std::uint8_t> used = run([&] { return used_caches(sites, gbuffer); });
             return py::array_t<std::uint8_t>(static_cast<py::ssize_t>(used.size()), used.data());
         },
-        py::arg("sites"), py::arg("gbuffer"), py::arg("scene"), "(caches,): 1 where some pixel reads the cache, else 0.");
+        py::arg("sites"), py::arg("gbuffer"), "(caches,): 1 where some pixel reads the cache, else 0.");
     m.def(
         "sample_caches",
         [](const AllSurfels& technique, const CacheSites& sites, const ClusteredSurfels& surfels, const NodeLight& light,

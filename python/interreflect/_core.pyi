@@ -1586,6 +1586,18 @@ class TracedSky:
     @property
     def filter_radius(self) -> int:
         ...
+class ShadowMaps:
+    """
+    Depth seen from all point, spot and directional lights.
+    """
+
+    @property
+    def bytes(self) -> int:
+        ...
+
+    @property
+    def counts(self) -> Counts:
+        ...
 class ReflectiveShadowMap:
     """
     What a light sees, and the flux that every texel's surface sends on: (size, size[, 3]) views.
@@ -3232,14 +3244,20 @@ class LightCaches:
         ...
 
     @property
-    def coefficients(self) -> numpy.typing.NDArray[numpy.float32]:
+    def coefficients(self) -> numpy.typing.NDArray[typing.Any]:
         """
-        (caches, bands^2 + 2 chrominance_bands^2): of red, green and blue, or where chrominance has fewer bands of Y, Co and Cg.
+        (caches, bands^2 + 2 chrominance_bands^2) float16, multiples of `unit`: of red, green and blue, or where chrominance has fewer bands of Y, Co and Cg.
         """
 
     @property
     def counts(self) -> Counts:
         ...
+
+    @property
+    def unit(self) -> numpy.typing.NDArray[numpy.float32]:
+        """
+        (caches,): what each cache's coefficients are multiples of, a power of two.
+        """
 class SurfelLight:
     """
     What pixels get from caches of surfels' light.
@@ -3707,6 +3725,11 @@ def lamp_shadow(technique: ShadowMap, scene: Scene, gbuffer: GBuffer, seed: typi
     """
     What pixels reflect of point, spot and directional lights alone: emitters come through links.
     """
+@typing.overload
+def lamp_shadow(technique: ShadowMap, scene: Scene, gbuffer: GBuffer, maps: ShadowMaps, seed: typing.SupportsInt | typing.SupportsIndex=0) -> DirectLight:
+    """
+    By maps that are there.
+    """
 def light_caches(links: CacheLinks, light: NodeLight, bands: typing.SupportsInt | typing.SupportsIndex, chrominance_bands: typing.SupportsInt | typing.SupportsIndex=0, used: typing.Any | None=None) -> LightCaches:
     """
     The sum over each cache's links. used: (caches,) uint8, 0 where nothing reads a cache and it may stay black.
@@ -3821,9 +3844,18 @@ def shadow(technique: TracedShadows, scene: Scene, gbuffer: GBuffer, seed: typin
 @typing.overload
 def shadow(technique: ShadowMap, scene: Scene, gbuffer: GBuffer, seed: typing.SupportsInt | typing.SupportsIndex=0) -> DirectLight:
     ...
+@typing.overload
+def shadow(technique: ShadowMap, scene: Scene, gbuffer: GBuffer, maps: ShadowMaps, seed: typing.SupportsInt | typing.SupportsIndex=0) -> DirectLight:
+    """
+    By maps that are there.
+    """
 def shadow_lights(technique: TracedVisibility | ImperfectShadowMaps | Unshadowed, lights: VirtualLights, points: SurfacePoints, scene: Scene) -> LightShadows:
     """
     What virtual lights see.
+    """
+def shadow_maps(technique: ShadowMap, scene: Scene) -> ShadowMaps:
+    """
+    Depth seen from every light, to be shared by all that it lights.
     """
 @typing.overload
 def shared_cut(technique: ShLinks, sites: CacheSites, surfels: ClusteredSurfels, scene: Scene) -> SharedCut:
@@ -3890,7 +3922,7 @@ def triad_bandwidth(repeats: typing.SupportsInt | typing.SupportsIndex, mebibyte
     """
     GB/s of a = b + s c over arrays of `mebibytes` each, best of `repeats`.
     """
-def used_caches(sites: CacheSites, gbuffer: GBuffer, scene: Scene) -> numpy.typing.NDArray[numpy.uint8]:
+def used_caches(sites: CacheSites, gbuffer: GBuffer) -> numpy.typing.NDArray[numpy.uint8]:
     """
     (caches,): 1 where some pixel reads the cache, else 0.
     """

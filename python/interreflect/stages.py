@@ -42,20 +42,32 @@ def trace_gbuffer(
     return _core.trace_gbuffer(scene.core, core_camera(view), width, height, _core.Exact() if shade is None else shade)
 
 
+def shadow_maps(technique: Any, scene: Scene) -> _core.ShadowMaps | None:
+    """Depth seen from every point, spot and directional light, which all that they light can share; None but for ShadowMap."""
+    return _core.shadow_maps(technique, scene.core) if isinstance(technique, _core.ShadowMap) else None
+
+
 def shadow(
-    technique: Any, scene: Scene, gbuffer: _core.GBuffer, seed: int = 0, pyramids: Sequence[_core.Pyramid] = ()
-) -> _core.DirectLight:
+    technique: Any, scene: Scene, gbuffer: _core.GBuffer, seed: int = 0, pyramids: Sequence[_core.Pyramid] = (),
+    maps: _core.ShadowMaps | None = None,
+) -> _core.DirectLight:  # fmt: skip
     """Light of point, spot and directional lights and of emitters, reflected once at the pixels: `.radiance` (height, width, 3).
-    VoxelCones needs the voxels' pyramids; what several let through is multiplied."""
+    VoxelCones needs the voxels' pyramids; what several let through is multiplied. maps: of `shadow_maps`; None: ShadowMap makes its own."""
     if isinstance(technique, _core.VoxelCones):
         if not pyramids:
             raise ValueError("VoxelCones needs the voxels to march through: shadow(..., pyramids=[prefilter(...)])")
         return _core.cone_shadow(technique, scene.core, gbuffer, list(pyramids), seed)
+    if maps is not None:
+        return _core.shadow(technique, scene.core, gbuffer, maps, seed)
     return _core.shadow(technique, scene.core, gbuffer, seed)
 
 
-def lamp_shadow(technique: Any, scene: Scene, gbuffer: _core.GBuffer, seed: int = 0) -> _core.DirectLight:
+def lamp_shadow(
+    technique: Any, scene: Scene, gbuffer: _core.GBuffer, seed: int = 0, maps: _core.ShadowMaps | None = None
+) -> _core.DirectLight:
     """`shadow` without emitters: what point, spot and directional lights send alone."""
+    if maps is not None:
+        return _core.lamp_shadow(technique, scene.core, gbuffer, maps, seed)
     return _core.lamp_shadow(technique, scene.core, gbuffer, seed)
 
 
@@ -312,9 +324,9 @@ def pull(surfels: _core.ClusteredSurfels, radiance: NDArray[np.float32], radiosi
     return _core.pull(surfels, radiance, radiosity)
 
 
-def used_caches(sites: _core.CacheSites, gbuffer: _core.GBuffer, scene: Scene) -> NDArray[np.uint8]:
+def used_caches(sites: _core.CacheSites, gbuffer: _core.GBuffer) -> NDArray[np.uint8]:
     """(caches,): 1 where some pixel interpolates from the cache, else 0."""
-    return _core.used_caches(sites, gbuffer, scene.core)
+    return _core.used_caches(sites, gbuffer)
 
 
 def light_caches(

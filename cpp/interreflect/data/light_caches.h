@@ -14,11 +14,24 @@ namespace interreflect {
 inline constexpr std::uint32_t no_cache = std::numeric_limits<std::uint32_t>::max();
 inline constexpr int most_bands = 8;
 
+inline constexpr std::uint32_t no_chart = std::numeric_limits<std::uint32_t>::max();
+
+/// Where the light map lies on a triangle. Rows: its texel coordinates as affine functions of the position in world space, and
+/// its front's normal, of any length; column by column, so that a position takes four multiply-adds of four lanes.
+struct alignas(64) ChartPlane {
+    vec4 column[4];
+};
+
 /// Texels of a square map over the still surface that have caches.
 struct LightMapSites {
     int size = 0;                 // texels on a side; 0: there is no map
     Buffer<std::uint32_t> cache;  // of every texel, row by row from v = 0; no_cache where none lies near
     Buffer<vec2> texcoord;        // of every corner of every triangle, in texels; negative: the triangle has no chart
+    Buffer<std::uint32_t>
+        plane_of;  // follows from texcoord, as planes do: of every triangle: where its plane lies in the list; no_chart
+    Buffer<ChartPlane> planes;
+
+    std::size_t bytes() const { return cache.bytes() + texcoord.bytes() + plane_of.bytes() + planes.bytes(); }
 };
 /// A box of caches, x fastest.
 struct GridSites {
@@ -39,8 +52,7 @@ struct CacheSites {
 
     std::size_t size() const { return position.size(); }
     std::size_t bytes() const {
-        return position.bytes() + normal.bytes() + offset.bytes() + map.cache.bytes() + map.texcoord.bytes() +
-               grid.cache.bytes() + grid.nearest.bytes();
+        return position.bytes() + normal.bytes() + offset.bytes() + map.bytes() + grid.cache.bytes() + grid.nearest.bytes();
     }
 };
 
@@ -73,18 +85,19 @@ struct CacheLinks {
 };
 
 /// Incident radiance of every cache: coefficients of luma (or red), then of both chrominances (or green and blue), cache by
-/// cache.
+/// cache. Half floats as in the paper, but each cache has its own unit: they neither overflow nor flush at any brightness.
 struct LightCaches {
     int bands = 0, chrominance_bands = 0;
     bool ycocg = false;
     std::size_t caches = 0;
-    Buffer<float> coefficients;
+    Buffer<std::uint16_t> coefficients;  // half floats; a vector's length more than there are, so that vectors may read on
+    Buffer<float> unit;                  // of each cache: a power of two; before a window the largest coefficient lies in [1, 2)
     Counts counts;
 
     int luma() const { return bands * bands; }
     int chrominance() const { return chrominance_bands * chrominance_bands; }
     int stride() const { return luma() + 2 * chrominance(); }
-    std::size_t bytes() const { return coefficients.bytes(); }
+    std::size_t bytes() const { return coefficients.bytes() + unit.bytes(); }
 };
 
 }  // namespace interreflect

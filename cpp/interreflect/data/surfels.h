@@ -34,12 +34,13 @@ struct SurfelTree {
         leaf_end;                  // number of leaves up to and with the last under the node: its surfels are [end - leaves, end)
     Buffer<std::uint32_t> node;    // of each surfel
     Buffer<float> area;            // of each node's surfels, scene units squared
+    Buffer<std::uint32_t> parent;  // the n - 1 nodes that are no leaves, in ascending order
     std::uint64_t inversions = 0;  // merges nearer than one of those that they build on
 
     std::size_t nodes() const { return leaves.size(); }
     std::uint32_t right(std::uint32_t i) const { return i - 1; }
     std::uint32_t left(std::uint32_t i) const { return i - 2 * leaves[i - 1]; }
-    std::size_t bytes() const { return leaves.bytes() + leaf_end.bytes() + node.bytes() + area.bytes(); }
+    std::size_t bytes() const { return leaves.bytes() + leaf_end.bytes() + node.bytes() + area.bytes() + parent.bytes(); }
 };
 
 /// Of every node: flux, W; or radiosity, W/m^2, where that was pulled.

@@ -8,7 +8,7 @@
 
 #include "data/light_caches.h"
 #include "data/surfels.h"
-#include "math/lanes-inl.h"
+#include "math/harmonic_lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace interreflect {
@@ -52,29 +52,32 @@ struct ConeLanes {
     Vector zonal[bands];
 };
 
-/// Links [first, first + count) of the list; lanes beyond bring nothing.
+/// Links [first, first + count) of the list, which goes on for a vector at least; lanes beyond bring nothing.
 template <int bands>
 HWY_INLINE ConeLanes<bands> load_cones(const CacheLinks& links, const NodeLight& light, std::size_t first, std::size_t count) {
     const Tag d;
-    constexpr std::size_t lanes = hn::MaxLanes(d);
-    alignas(64) float sent[3][lanes] = {}, x[lanes] = {}, z[lanes] = {};
-    alignas(64) std::uint16_t factor[lanes] = {}, narrow[lanes] = {};
-    for (std::size_t k = 0; k < count; ++k) {
-        const ConeLink& link = links.cones[first + k];
-        const vec3& value = light.value[link.node];
-        sent[0][k] = value.x, sent[1][k] = value.y, sent[2][k] = value.z;
-        x[k] = link.x, z[k] = link.y;
-        factor[k] = link.factor, narrow[k] = link.one_less_cos;
-    }
+    const hn::RebindToUnsigned<Tag> du;
+    const hn::RebindToSigned<Tag> di;
+    const hn::Rebind<std::uint16_t, Tag> words;
+    hn::Vec<decltype(du)> node, shape, place;
+    hn::LoadInterleaved3(du, &links.cones[first].node, node, shape, place);
+    const auto low = hn::Set(du, 0xffffU);
+    const auto there = hn::FirstN(du, count);
+    const auto from = hn::BitCast(di, hn::IfThenElseZero(there, node));
+    const auto at = hn::Add(from, hn::Add(from, from));
+    const float* const values = &light.value[0].x;
     const hn::Rebind<hwy::float16_t, Tag> half;
-    const auto promoted = [&](const std::uint16_t* bits) {
-        return hn::PromoteTo(d, hn::Load(half, reinterpret_cast<const hwy::float16_t*>(bits)));
+    const auto promoted = [&](auto bits) HWY_ATTR {
+        return hn::PromoteTo(d, hn::BitCast(half, hn::DemoteTo(words, hn::BitCast(di, bits))));
     };
-    const Vector f = promoted(factor), s = promoted(narrow), c = hn::Sub(hn::Set(d, 1.0f), s);
+    const auto number = [&](auto bits) HWY_ATTR { return hn::ConvertTo(d, hn::BitCast(di, bits)); };
+    const Vector f = promoted(hn::And(hn::IfThenElseZero(there, shape), low)), s = promoted(hn::ShiftRight<16>(shape)),
+                 c = hn::Sub(hn::Set(d, 1.0f), s);
     const Vector c2 = hn::Mul(c, c), s2 = hn::Mul(s, hn::Sub(hn::Set(d, 2.0f), s));
     ConeLanes<bands> cones;
-    cones.direction = octahedral_lanes(hn::Load(d, x), hn::Load(d, z));
-    cones.light = scaled({hn::Load(d, sent[0]), hn::Load(d, sent[1]), hn::Load(d, sent[2])}, f);
+    cones.direction = octahedral_lanes(number(hn::And(place, low)), number(hn::ShiftRight<16>(place)));
+    cones.light =
+        scaled({hn::GatherIndex(d, values, at), hn::GatherIndex(d, values + 1, at), hn::GatherIndex(d, values + 2, at)}, f);
     [&]<int... l>(std::integer_sequence<int, l...>) { ((cones.zonal[l] = zonal_lanes<l>(s, c, c2, s2)), ...); }
     (std::make_integer_sequence<int, bands>());
     return cones;
@@ -83,30 +86,16 @@ HWY_INLINE ConeLanes<bands> load_cones(const CacheLinks& links, const NodeLight&
 /// Adds the cones' projections to the coefficients' sums, a lane each, but for harmonic_norms.
 template <int bands>
 HWY_INLINE void add_cones(const ConeLanes<bands>& cones, Vector (*sum)[bands * bands]) {
-    const Tag d;
-    const auto add = [&](int i, Vector value) {
+    const auto add = [&](int i, Vector value) HWY_ATTR {
         sum[0][i] = hn::MulAdd(value, cones.light.x, sum[0][i]);
         sum[1][i] = hn::MulAdd(value, cones.light.y, sum[1][i]);
         sum[2][i] = hn::MulAdd(value, cones.light.z, sum[2][i]);
     };
-    Vector cosine = hn::Set(d, 1.0f), sine = hn::Zero(d);
-    float diagonal = 1.0f;
-    for (int m = 0; m < bands; ++m) {
-        Vector before = hn::Zero(d), now = hn::Set(d, diagonal);
-        for (int l = m; l < bands; ++l) {
-            const Vector value = hn::Mul(now, cones.zonal[l]);
-            add(l * l + l + m, hn::Mul(value, cosine));
-            if (m > 0) add(l * l + l - m, hn::Mul(value, sine));
-            const float rest = 1.0f / static_cast<float>(l + 1 - m);
-            const Vector next = hn::MulSub(hn::Mul(cones.direction.z, hn::Set(d, static_cast<float>(2 * l + 1) * rest)), now,
-                                           hn::Mul(before, hn::Set(d, static_cast<float>(l + m) * rest)));
-            before = now, now = next;
-        }
-        diagonal *= static_cast<float>(2 * m + 1);
-        const Vector turned = hn::MulSub(cones.direction.x, cosine, hn::Mul(cones.direction.y, sine));
-        sine = hn::MulAdd(cones.direction.x, sine, hn::Mul(cones.direction.y, cosine));
-        cosine = turned;
-    }
+    visit_harmonics<bands>(cones.direction, [&](int l, int m, Vector p, Vector cosine, Vector sine) HWY_ATTR {
+        const Vector value = hn::Mul(p, cones.zonal[l]);
+        add(l * l + l + m, hn::Mul(value, cosine));
+        if (m > 0) add(l * l + l - m, hn::Mul(value, sine));
+    });
 }
 
 }  // namespace HWY_NAMESPACE

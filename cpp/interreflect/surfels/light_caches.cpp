@@ -11,7 +11,7 @@
 namespace interreflect {
 namespace {
 
-constexpr std::size_t caches_a_block = 64;
+constexpr std::size_t caches_a_block = 64, most_lanes = 16;
 
 }  // namespace
 
@@ -35,23 +35,9 @@ LightCaches make_light_caches(std::size_t caches, const CacheFormat& format) {
     made.bands = format.bands, made.chrominance_bands = chrominance;
     made.ycocg = chrominance < format.bands;
     made.caches = caches;
-    made.coefficients = Buffer<float>(caches * static_cast<std::size_t>(made.stride()));
+    made.coefficients = Buffer<std::uint16_t>(caches * static_cast<std::size_t>(made.stride()) + most_lanes, std::uint16_t{0});
+    made.unit = Buffer<float>(caches);
     return made;
-}
-
-void store_cache(LightCaches& caches, std::size_t cache, const float* red, const float* green, const float* blue) {
-    const int luma = caches.luma(), chrominance = caches.chrominance();
-    float* first = caches.coefficients.data() + cache * static_cast<std::size_t>(caches.stride());
-    float *second = first + luma, *third = second + chrominance;
-    if (!caches.ycocg) {
-        std::copy_n(red, luma, first), std::copy_n(green, luma, second), std::copy_n(blue, luma, third);
-        return;
-    }
-    for (int k = 0; k < luma; ++k) first[k] = 0.25f * red[k] + 0.5f * green[k] + 0.25f * blue[k];
-    for (int k = 0; k < chrominance; ++k) {
-        second[k] = 0.5f * (red[k] - blue[k]);
-        third[k] = 0.5f * green[k] - 0.25f * (red[k] + blue[k]);
-    }
 }
 
 LightCaches light_caches(const CacheLinks& links, const NodeLight& light, const CacheFormat& format,
@@ -76,7 +62,8 @@ LightCaches light_caches(const CacheLinks& links, const NodeLight& light, const 
                 lit[begin / caches_a_block] += last - first;
             } else {
                 const auto stride = static_cast<std::size_t>(made.stride());
-                std::fill(made.coefficients.data() + first * stride, made.coefficients.data() + last * stride, 0.0f);
+                std::fill(made.coefficients.data() + first * stride, made.coefficients.data() + last * stride, std::uint16_t{0});
+                std::fill(made.unit.data() + first, made.unit.data() + last, 1.0f);
             }
             first = last;
         }

@@ -26,7 +26,4 @@ void check_links(const CacheLinks& links, const NodeLight& light);
 /// Empty caches of a format; checks it.
 LightCaches make_light_caches(std::size_t caches, const CacheFormat& format);
 
-/// Adds a colour's coefficients, cache by cache: `red`, `green`, `blue` have bands^2 each.
-void store_cache(LightCaches& caches, std::size_t cache, const float* red, const float* green, const float* blue);
-
 }  // namespace interreflect

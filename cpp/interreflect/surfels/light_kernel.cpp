@@ -1,6 +1,8 @@
 #include "surfels/light_kernel.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstring>
 #include <utility>
 
 #include "math/spherical_harmonics.h"
@@ -23,32 +25,80 @@ namespace interreflect {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// `count` vectors of coefficients for each colour.
+/// Writes a cache as half floats.
+void StoreCache(LightCaches& caches, std::size_t cache, const float* red, const float* green, const float* blue) {
+    const Tag d;
+    const hn::Rebind<hwy::float16_t, Tag> half;
+    constexpr int lanes = static_cast<int>(hn::MaxLanes(d));
+    const int luma = caches.luma(), chrominance = caches.chrominance();
+    alignas(64) float values[3][64];
+    Vector largest = hn::Set(d, 0x1p-120f);
+    const auto n = [&](float value) HWY_ATTR { return hn::Set(d, value); };
+    for (int k = 0; k < luma; k += lanes) {
+        const Vector r = hn::Load(d, red + k), g = hn::Load(d, green + k), b = hn::Load(d, blue + k);
+        const Vector both = hn::Add(r, b);
+        const Vector channel[3] = {
+            caches.ycocg ? hn::MulAdd(n(0.5f), g, hn::Mul(n(0.25f), both)) : r,
+            caches.ycocg ? hn::Mul(n(0.5f), hn::Sub(r, b)) : g,
+            caches.ycocg ? hn::MulSub(n(0.5f), g, hn::Mul(n(0.25f), both)) : b,
+        };
+        const auto counts = hn::Lt(hn::Iota(d, static_cast<float>(k)), n(static_cast<float>(luma)));
+        for (int c = 0; c < 3; ++c) {
+            hn::Store(channel[c], d, values[c] + k);
+            largest = hn::Max(largest, hn::IfThenElseZero(counts, hn::Abs(channel[c])));
+        }
+    }
+    // The power of two below the largest: dividing by it is exact.
+    const float unit = std::ldexp(1.0f, std::ilogb(hn::GetLane(hn::MaxOfLanes(d, largest))));
+    caches.unit[cache] = unit;
+    const Vector inverse = n(1.0f / unit);
+    auto* to = reinterpret_cast<hwy::float16_t*>(caches.coefficients.data()) + cache * static_cast<std::size_t>(caches.stride());
+    for (int c = 0; c < 3; ++c) {
+        const int count = c == 0 ? luma : chrominance;
+        alignas(64) hwy::float16_t halves[64];
+        for (int k = 0; k < count; k += lanes)
+            hn::Store(hn::DemoteTo(half, hn::Mul(hn::Load(d, values[c] + k), inverse)), half, halves + k);
+        std::memcpy(to, halves, static_cast<std::size_t>(count) * sizeof(hwy::float16_t));
+        to += count;
+    }
+}
+
+/// `count` vectors of coefficients for each colour. Sums of even and odd links, as an addition waits for the one before.
 template <int count>
 void sum_links(const CacheLinks& links, const NodeLight& light, std::size_t cache, float* colours) {
     const Tag d;
     const hn::Rebind<hwy::float16_t, Tag> half;
     constexpr std::size_t lanes = hn::MaxLanes(d);
+    constexpr int apart = count <= 2 ? 2 : 1;
     const std::size_t each = static_cast<std::size_t>(links.bands * links.bands);
     const std::size_t first = cache * static_cast<std::size_t>(links.per_cache);
     const auto* coefficients = reinterpret_cast<const hwy::float16_t*>(links.coefficients.data()) + first * each;
-    Vector sum[3][count];
-    for (auto& colour : sum)
-        for (Vector& one : colour) one = hn::Zero(d);
-    for (std::size_t k = 0; k < static_cast<std::size_t>(links.per_cache); ++k, coefficients += each) {
-        const vec3 sent = light.value[links.node[first + k]];
+    Vector sum[apart][3][count];
+    for (auto& one : sum)
+        for (auto& colour : one)
+            for (Vector& part : colour) part = hn::Zero(d);
+    const auto add = [&](std::size_t k, int to) HWY_ATTR {
+        const vec3& sent = light.value[links.node[first + k]];
         const Vector red = hn::Set(d, sent.x), green = hn::Set(d, sent.y), blue = hn::Set(d, sent.z);
         for (int v = 0; v < count; ++v) {
-            const Vector c = hn::PromoteTo(d, hn::LoadU(half, coefficients + static_cast<std::size_t>(v) * lanes));
-            sum[0][v] = hn::MulAdd(c, red, sum[0][v]);
-            sum[1][v] = hn::MulAdd(c, green, sum[1][v]);
-            sum[2][v] = hn::MulAdd(c, blue, sum[2][v]);
+            const Vector c = hn::PromoteTo(d, hn::LoadU(half, coefficients + k * each + static_cast<std::size_t>(v) * lanes));
+            sum[to][0][v] = hn::MulAdd(c, red, sum[to][0][v]);
+            sum[to][1][v] = hn::MulAdd(c, green, sum[to][1][v]);
+            sum[to][2][v] = hn::MulAdd(c, blue, sum[to][2][v]);
         }
-    }
+    };
+    const auto all = static_cast<std::size_t>(links.per_cache);
+    std::size_t k = 0;
+    for (; k + apart <= all; k += apart)
+        for (int to = 0; to < apart; ++to) add(k + static_cast<std::size_t>(to), to);
+    for (; k < all; ++k) add(k, 0);
     const Vector unit = hn::Set(d, links.unit);
     for (int colour = 0; colour < 3; ++colour)
-        for (int v = 0; v < count; ++v)
-            hn::Store(hn::Mul(sum[colour][v], unit), d, colours + 64 * colour + static_cast<std::size_t>(v) * lanes);
+        for (int v = 0; v < count; ++v) {
+            Vector whole = sum[0][colour][v];
+            if (apart == 2) whole = hn::Add(whole, sum[apart - 1][colour][v]);
+            hn::Store(hn::Mul(whole, unit), d, colours + 64 * colour + static_cast<std::size_t>(v) * lanes);
+        }
 }
 
 void ProjectedCaches(const CacheLinks& links, const NodeLight& light, std::size_t begin, std::size_t end, LightCaches& caches) {
@@ -67,7 +117,7 @@ void ProjectedCaches(const CacheLinks& links, const NodeLight& light, std::size_
             sum_links < 64 / lanes<8 ? 64 / lanes : 8>(links, light, cache, colours);
         else
             sum_links<64 / lanes>(links, light, cache, colours);
-        store_cache(caches, cache, colours, colours + 64, colours + 128);
+        StoreCache(caches, cache, colours, colours + 64, colours + 128);
     }
 }
 
@@ -100,7 +150,7 @@ void ConeCaches(const CacheLinks& links, const NodeLight& light, std::size_t beg
             ((caches.bands == less + 1 ? sum_cones<less + 1>(links, light, cache, colours) : void()), ...);
         }
         (std::make_integer_sequence<int, most_bands>());
-        store_cache(caches, cache, colours, colours + 64, colours + 128);
+        StoreCache(caches, cache, colours, colours + 64, colours + 128);
     }
 }
 
@@ -110,8 +160,13 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace interreflect {
+HWY_EXPORT(StoreCache);
 HWY_EXPORT(ProjectedCaches);
 HWY_EXPORT(ConeCaches);
+
+void store_cache(LightCaches& caches, std::size_t cache, const float* red, const float* green, const float* blue) {
+    HWY_DYNAMIC_DISPATCH(StoreCache)(caches, cache, red, green, blue);
+}
 
 void light_projected(const CacheLinks& links, const NodeLight& light, std::size_t begin, std::size_t end, LightCaches& caches) {
     HWY_DYNAMIC_DISPATCH(ProjectedCaches)(links, light, begin, end, caches);

@@ -10,4 +10,7 @@ void light_projected(const CacheLinks& links, const NodeLight& light, std::size_
 /// The same of cones.
 void light_cones(const CacheLinks& links, const NodeLight& light, std::size_t begin, std::size_t end, LightCaches& caches);
 
+/// Writes a cache: `red`, `green`, `blue` have bands^2 coefficients each, in arrays of 64 aligned to 64 bytes.
+void store_cache(LightCaches& caches, std::size_t cache, const float* red, const float* green, const float* blue);
+
 }  // namespace interreflect

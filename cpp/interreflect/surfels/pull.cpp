@@ -1,5 +1,6 @@
 #include "surfels/pull.h"
 
+#include <algorithm>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -11,6 +12,7 @@ namespace {
 
 constexpr std::size_t pieces = 64;
 
+/// Nodes [begin, end).
 struct NodeRange {
     std::size_t begin, end;
 };
@@ -31,6 +33,35 @@ std::vector<NodeRange> subtrees(const SurfelTree& tree) {
     return ranges;
 }
 
+/// What a subtree's surfels send. Apart from add_children: leaves and parents follow each other in no order that a processor
+/// could guess, and neither loop has to.
+void send(const SurfelTree& tree, std::span<const vec3> radiance, const NodeRange& subtree, NodeLight& light) {
+    const std::size_t end = tree.leaf_end[subtree.end - 1], begin = end - tree.leaves[subtree.end - 1];
+    for (std::size_t surfel = begin; surfel < end; ++surfel) {
+        const std::uint32_t node = tree.node[surfel];
+        light.value[node] = radiance[surfel] * (light.radiosity ? pi : pi * tree.area[node]);
+    }
+}
+
+/// The sums of parents [begin, end) in the list, whose children are done.
+void add_children(const SurfelTree& tree, std::size_t begin, std::size_t end, NodeLight& light) {
+    vec3* const value = light.value.data();
+    if (!light.radiosity) {
+        for (std::size_t k = begin; k < end; ++k) {
+            const std::uint32_t i = tree.parent[k];
+            value[i] = value[tree.left(i)] + value[i - 1];
+        }
+        return;
+    }
+    for (std::size_t k = begin; k < end; ++k) {
+        const std::uint32_t i = tree.parent[k], left = tree.left(i);
+        value[i] = (value[left] * tree.area[left] + value[i - 1] * tree.area[i - 1]) / tree.area[i];
+    }
+}
+
+/// How many parents lie before a node: of the nodes before it, those that are no leaves.
+std::size_t parents_before(const SurfelTree& tree, std::size_t node) { return node == 0 ? 0 : node - tree.leaf_end[node - 1]; }
+
 }  // namespace
 
 NodeLight pull(const SurfelTree& tree, std::span<const vec3> radiance, bool as_radiosity) {
@@ -39,29 +70,17 @@ NodeLight pull(const SurfelTree& tree, std::span<const vec3> radiance, bool as_r
         throw std::invalid_argument("pull: light of " + std::to_string(radiance.size()) + " surfels for a tree of " +
                                     std::to_string(n));
     NodeLight light{Buffer<vec3>(tree.nodes()), as_radiosity};
-    vec3* value = light.value.data();
-    const auto sum_up = [&](std::size_t i) {
-        const std::uint32_t leaves = tree.leaves[i];
-        if (leaves == 1) {
-            const float scale = as_radiosity ? pi : pi * tree.area[i];
-            value[i] = radiance[tree.leaf_end[i] - 1] * scale;
-        } else {
-            const std::uint32_t left = tree.left(static_cast<std::uint32_t>(i));
-            value[i] = as_radiosity ? (value[left] * tree.area[left] + value[i - 1] * tree.area[i - 1]) / tree.area[i]
-                                    : value[left] + value[i - 1];
-        }
-    };
     const auto ranges = subtrees(tree);
     parallel_pieces(ranges.size(), [&](std::size_t piece) {
-        for (std::size_t i = ranges[piece].begin; i < ranges[piece].end; ++i) sum_up(i);
+        const NodeRange& range = ranges[piece];
+        send(tree, radiance, range, light);
+        add_children(tree, parents_before(tree, range.begin), parents_before(tree, range.end), light);
     });
-    // Ranges were found from the last one on; what lies between them is summed in ascending order.
+    // Ranges were found from the last one on; between them lie parents alone, which are summed in ascending order.
     std::size_t next = 0;
-    for (std::size_t k = ranges.size(); k-- > 0;) {
-        for (; next < ranges[k].begin; ++next) sum_up(next);
-        next = ranges[k].end;
-    }
-    for (; next < tree.nodes(); ++next) sum_up(next);
+    for (std::size_t k = ranges.size(); k-- > 0; next = ranges[k].end)
+        add_children(tree, parents_before(tree, next), parents_before(tree, ranges[k].begin), light);
+    add_children(tree, parents_before(tree, next), parents_before(tree, tree.nodes()), light);
     return light;
 }
 

@@ -5,10 +5,13 @@
 #include <stdexcept>
 #include <string>
 
+#include "surfels/sites/light_map.h"
+
 namespace interreflect {
 namespace {
 
-constexpr int most_side = 4096;  // texels of a map, or cells of a box
+constexpr std::size_t most_lanes = 16;  // that vectors may read beyond the last cone
+constexpr int most_side = 4096;         // texels of a map, or cells of a box
 
 void need(bool sound, const std::string& what) {
     if (!sound) throw std::invalid_argument("stored " + what);
@@ -68,6 +71,9 @@ void check_stored(const ClusteredSurfels& stored, const Scene& scene) {
     check_tree(stored.tree, n);
 }
 
+void complete(ClusteredSurfels& surfels, const Scene&) { list_parents(surfels.tree); }
+void complete(CacheSites& sites, const Scene& scene) { lay_planes(sites.map, scene); }
+
 void check_stored(const CacheSites& sites, const Scene& scene) {
     const std::size_t n = sites.size(), corners = 3 * scene.geometry->groups.front().triangle_count;
     need(sites.normal.size() == n && sites.offset.size() == n, "caches: arrays of different lengths");
@@ -106,8 +112,8 @@ void check_stored(const CacheLinks& links, const CacheSites& sites, const Cluste
     const bool cones = links.kind == CacheLinks::Kind::cones;
     const std::size_t count = links.caches * static_cast<std::size_t>(links.per_cache);
     const std::size_t each = static_cast<std::size_t>(links.bands * links.bands);
-    need(links.per_cache == 0 ||
-             (cones ? links.cones.size() == count : links.node.size() == count && links.coefficients.size() >= count * each + 64),
+    need(links.per_cache == 0 || (cones ? links.cones.size() >= count + most_lanes
+                                        : links.node.size() == count && links.coefficients.size() >= count * each + 64),
          "links: arrays of other lengths than " + std::to_string(count) + " links");
     need(std::isfinite(links.unit) && links.unit > 0.0f, "links: their unit is not a positive number");
     const bool inside = cones ? std::ranges::all_of(links.cones, [&](const ConeLink& l) { return l.node < links.nodes; })

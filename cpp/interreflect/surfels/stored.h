@@ -12,4 +12,8 @@ void check_stored(const ClusteredSurfels& surfels, const Scene& scene);
 void check_stored(const CacheSites& sites, const Scene& scene);
 void check_stored(const CacheLinks& links, const CacheSites& sites, const ClusteredSurfels& surfels);
 
+/// What follows from the arrays of a file, which must be sound.
+void complete(ClusteredSurfels& surfels, const Scene& scene);
+void complete(CacheSites& sites, const Scene& scene);
+
 }  // namespace interreflect

@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "math/half.h"
 #include "math/parallel.h"
 
 namespace interreflect {
@@ -24,9 +25,9 @@ void window_caches(LightCaches& caches, std::string_view window) {
     if (window == "none") return;
     parallel_blocks(caches.caches, 1024, [&](std::size_t begin, std::size_t end) {
         for (std::size_t cache = begin; cache < end; ++cache) {
-            float* c = caches.coefficients.data() + cache * static_cast<std::size_t>(caches.stride());
+            std::uint16_t* c = caches.coefficients.data() + cache * static_cast<std::size_t>(caches.stride());
             for (const int count : {caches.luma(), caches.chrominance(), caches.chrominance()})
-                for (int i = 0; i < count; ++i) *c++ *= scale[i];
+                for (int i = 0; i < count; ++i, ++c) *c = to_half(from_half(*c) * scale[i]);
         }
     });
 }

@@ -28,6 +28,7 @@ from interreflect.stages import (
     pull,
     shade,
     shadow,
+    shadow_maps,
     sky,
     surfel_pixels,
     trace_gbuffer,
@@ -147,13 +148,14 @@ class IlluminanceComposition(Method):
         at_pixels, at_surfels = self.linked(view, gbuffer, profile)
         if self.lit_caches == "read":
             with profile.stage("used_caches"):
-                at_pixels = replace(at_pixels, used=used_caches(at_pixels.sites, gbuffer, scene))
+                at_pixels = replace(at_pixels, used=used_caches(at_pixels.sites, gbuffer))
         emitted = self.emitted(view, at_pixels, at_surfels, profile)
-        arrived, kept = self.light(view, at_pixels, at_surfels, emitted, profile)
+        maps = self.shadow_maps(view, profile)
+        arrived, kept = self.light(view, at_pixels, at_surfels, emitted, maps, profile)
         with profile.stage("evaluate") as note:
             light = note(self.gathered(arrived, at_pixels, gbuffer, scene))
         with profile.stage("shadow") as note:
-            direct_light = note((shadow if emitted is None else lamp_shadow)(self.shadow, scene, gbuffer, seed))
+            direct_light = note(self.direct(view, gbuffer, maps))
         with profile.stage("sky") as note:
             environment = note(sky(self.sky, scene, gbuffer, seed))
         with profile.stage("shade"):
@@ -197,12 +199,29 @@ class IlluminanceComposition(Method):
         same = at_surfels.sites is at_pixels.sites
         return to_surfels if same else self.pass_on(view, sent, at_pixels, 0, profile), to_surfels
 
+    def shadow_maps(self, view: View, profile: Profile) -> _core.ShadowMaps | None:
+        """Those that pixels and surfels share."""
+        if not isinstance(self.shadow, _core.ShadowMap):
+            return None
+        with profile.stage("shadow_maps") as note:
+            return note(shadow_maps(self.shadow, view.scene))
+
+    def direct(self, view: View, gbuffer: _core.GBuffer, maps: _core.ShadowMaps | None) -> _core.DirectLight:
+        """What lights send, and by rays emitters."""
+        return (shadow if self.emitters == "rays" else lamp_shadow)(self.shadow, view.scene, gbuffer, view.seed, maps=maps)
+
     def light(
-        self, view: View, at_pixels: Caches, at_surfels: Caches, emitted: tuple[CacheLight, CacheLight] | None, profile: Profile
+        self,
+        view: View,
+        at_pixels: Caches,
+        at_surfels: Caches,
+        emitted: tuple[CacheLight, CacheLight] | None,
+        maps: _core.ShadowMaps | None,
+        profile: Profile,
     ) -> tuple[CacheLight, CacheLight | None]:
         """What comes of all bounces asked for to the caches of pixels, and to those of surfels for the next frame."""
         with profile.stage("light_surfels") as note:
-            lit = self.light_surfels(view, note, emitters=emitted is None)
+            lit = self.light_surfels(view, maps, note)
             if emitted is not None:
                 lit = lit + self.reflected(view, emitted[1], at_surfels, note)
         last: CacheLight | None = view.history if self.bounces is None else None
@@ -241,10 +260,10 @@ class IlluminanceComposition(Method):
     def gathered(self, light: CacheLight, caches: Caches, gbuffer: _core.GBuffer, scene: Scene) -> _core.SurfelLight:
         return evaluate(self.evaluate, light.caches, caches.sites, gbuffer, scene, caches.links, light.patches)
 
-    def light_surfels(self, view: View, note: Any, emitters: bool) -> NDArray[np.float32]:
+    def light_surfels(self, view: View, maps: _core.ShadowMaps | None, note: Any) -> NDArray[np.float32]:
         """(rows, columns, 3): radiance that surfels reflect of the lights', and by rays of the emitters'."""
         pixels = view.state["pixels"]
-        lights = note((shadow if emitters else lamp_shadow)(self.shadow, view.scene, pixels, view.seed))
+        lights = note(self.direct(view, pixels, maps))
         # Neighbours in the list of surfels are none in a picture: nothing may be filtered over them.
         environment = note(sky(self.sky.replace(filter_radius=0), view.scene, pixels, view.seed))
         radiance: NDArray[np.float32] = lights.radiance + environment.radiance

@@ -1,6 +1,9 @@
 /// Shadow maps: depth seen from the light, compared at the pixels.
 #pragma once
+#include <vector>
+
 #include "direct/shadow/traced_shadows.h"
+#include "visibility/depth_map.h"
 
 namespace interreflect {
 
@@ -23,6 +26,20 @@ struct ShadowMap {
               Unit::texels, between(0, 1000)},
         Param{"samples", &ShadowMap::samples, "points on emitters for every pixel", Unit::samples, between(1, 65536)});
 };
+/// The maps of all point, spot and directional lights, as LightSampler counts them: what a frame's pixels and all else that it
+/// lights can share.
+struct ShadowMaps {
+    std::vector<DepthMaps> lights;
+    Counts counts;
+
+    std::size_t bytes() const;
+};
+ShadowMaps shadow_maps(const ShadowMap& technique, const Scene& scene, const Intersector& intersector);
+
+/// std::invalid_argument for maps of another number of lights.
+DirectLight shadow(const ShadowMap& technique, const ShadowMaps& maps, const Scene& scene, const Intersector& intersector,
+                   const LightSampler& lights, const GBuffer& gbuffer, std::uint32_t seed);
+/// By maps of its own.
 DirectLight shadow(const ShadowMap& technique, const Scene& scene, const Intersector& intersector, const LightSampler& lights,
                    const GBuffer& gbuffer, std::uint32_t seed);
 

@@ -19,7 +19,7 @@ ClusteredSurfels in_post_order(const Surfels& surfels, std::span<const Merge> me
     if (merges.size() + 1 != std::max<std::size_t>(n, 1)) throw std::invalid_argument("a tree of n surfels has n - 1 merges");
     ClusteredSurfels made{
         make_surfels(n),
-        {Buffer<std::uint32_t>(nodes), Buffer<std::uint32_t>(nodes), Buffer<std::uint32_t>(n), Buffer<float>(nodes)}};
+        {Buffer<std::uint32_t>(nodes), Buffer<std::uint32_t>(nodes), Buffer<std::uint32_t>(n), Buffer<float>(nodes), {}}};
     made.surfels.extent = surfels.extent;
     SurfelTree& tree = made.tree;
     // Children before their parent, left before right: a node is put down when it is met the second time.
@@ -49,7 +49,15 @@ ClusteredSurfels in_post_order(const Surfels& surfels, std::span<const Merge> me
             tree.leaf_end[next++] = leaves;
         }
     }
+    list_parents(tree);
     return made;
+}
+
+void list_parents(SurfelTree& tree) {
+    tree.parent = Buffer<std::uint32_t>(tree.nodes() / 2);
+    std::size_t next = 0;
+    for (std::uint32_t i = 0; i < tree.nodes(); ++i)
+        if (tree.leaves[i] > 1) tree.parent[next++] = i;
 }
 
 }  // namespace interreflect

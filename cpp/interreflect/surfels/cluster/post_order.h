@@ -22,4 +22,7 @@ struct Merge {
 /// The tree of n - 1 merges of n surfels. std::invalid_argument for another number of them.
 ClusteredSurfels in_post_order(const Surfels& surfels, std::span<const Merge> merges);
 
+/// Fills in the list of nodes that are no leaves.
+void list_parents(SurfelTree& tree);
+
 }  // namespace interreflect

@@ -1,23 +1,204 @@
 #include "surfels/evaluate/cache_finder.h"
 
 #include <algorithm>
-#include <cmath>
 #include <stdexcept>
 
-namespace interreflect {
-namespace {
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "surfels/evaluate/cache_finder.cpp"
+#include <hwy/foreach_target.h>
+// clang-format off
+#include <hwy/highway.h>
+// clang-format on
 
-/// Scales the weights so that they sum up to 1.
-void normalise(NearCaches& near) {
-    float sum = 0;
-    for (int k = 0; k < near.count; ++k) sum += near.weight[static_cast<std::size_t>(k)];
-    for (int k = 0; k < near.count; ++k) near.weight[static_cast<std::size_t>(k)] /= sum;
+#include "math/lanes-inl.h"
+
+// Roofline: of each pixel position, geometric normal, triangle and instance, 32 bytes, are read once. A pixel's triangle takes
+// four multiply-adds of four lanes, which texels or cells lie about it some 40 or 100 operations of one lane, and 4 or 8 gathers.
+HWY_BEFORE_NAMESPACE();
+namespace interreflect {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using Whole = hn::RebindToSigned<Tag>;
+using Index = hn::Vec<Whole>;
+constexpr std::size_t lanes = hn::MaxLanes(Tag());
+
+/// Slots of a vector of pixels.
+struct Slots {
+    Index cache[NearCaches::slots];
+    Vector weight[NearCaches::slots], sum;
+
+    HWY_INLINE Slots() {
+        for (int k = 0; k < NearCaches::slots; ++k) set_empty(k);
+        sum = hn::Zero(Tag());
+    }
+
+    HWY_INLINE void set_empty(int slot) { cache[slot] = hn::Zero(Whole()), weight[slot] = hn::Zero(Tag()); }
+    HWY_INLINE void set(int slot, Index number, Vector by) { cache[slot] = number, weight[slot] = by, sum = hn::Add(sum, by); }
+    /// So that the weights sum up to 1.
+    HWY_INLINE void store(int slots, std::size_t at, NearCaches& near) const {
+        const Tag d;
+        const Vector some = hn::IfThenElse(hn::Gt(sum, hn::Zero(d)), sum, hn::Set(d, 1.0f));
+        for (int k = 0; k < slots; ++k) {
+            hn::Store(cache[k], Whole(), reinterpret_cast<std::int32_t*>(near.cache[k] + at));
+            hn::Store(hn::Div(weight[k], some), d, near.weight[k] + at);
+        }
+    }
+};
+
+/// What is listed at `index` where `at` holds; no_cache elsewhere.
+template <class M>
+HWY_INLINE Index listed(const Buffer<std::uint32_t>& list, M at, Index index) {
+    const Whole di;
+    const Index found = hn::GatherIndex(di, reinterpret_cast<const std::int32_t*>(list.data()), hn::IfThenElseZero(at, index));
+    return hn::IfThenElse(at, found, hn::Set(di, -1));
 }
 
-}  // namespace
+/// A cache that exists, and its weight; else 0.
+HWY_INLINE void add(Slots& slots, int slot, Index cache, Vector weight) {
+    const Tag d;
+    const Whole di;
+    const auto exists = hn::Gt(cache, hn::Set(di, -1));
+    slots.set(slot, hn::IfThenElseZero(exists, cache), hn::IfThenElseZero(hn::RebindMask(d, exists), weight));
+}
 
-CacheFinder::CacheFinder(const CacheSites& sites, const GBuffer& gbuffer, const Scene& scene)
-    : sites_(sites), gbuffer_(gbuffer), scene_(scene) {
+/// One of two neighbours' weights along an axis.
+HWY_INLINE Vector part(Vector share, int step) { return step != 0 ? share : hn::Sub(hn::Set(Tag(), 1.0f), share); }
+
+/// Bilinear between the texels about (u, v) where `mapped` holds.
+HWY_INLINE Slots in_map(const LightMapSites& map, LaneMask mapped, Vector u, Vector v) {
+    const Tag d;
+    const Whole di;
+    const Vector half = hn::Set(d, 0.5f);
+    u = hn::Sub(u, half), v = hn::Sub(v, half);
+    const Vector left = hn::Floor(u), top = hn::Floor(v), across = hn::Sub(u, left), down = hn::Sub(v, top);
+    const Index size = hn::Set(di, map.size), x0 = hn::ConvertTo(di, left), y0 = hn::ConvertTo(di, top);
+    const auto within = [&](Index i) HWY_ATTR { return hn::And(hn::Gt(i, hn::Set(di, -1)), hn::Lt(i, size)); };
+    Slots slots;
+    for (int k = 0; k < 4; ++k) {
+        const Index x = hn::Add(x0, hn::Set(di, k & 1)), y = hn::Add(y0, hn::Set(di, k >> 1));
+        const auto there = hn::And(hn::And(within(x), within(y)), hn::RebindMask(di, mapped));
+        add(slots, k, listed(map.cache, there, hn::Add(hn::Mul(y, size), x)), hn::Mul(part(across, k & 1), part(down, k >> 1)));
+    }
+    return slots;
+}
+
+/// A coordinate among the middles of cells: the lower neighbour's number, and the share of the upper one.
+struct Between {
+    Index low;
+    Vector share;
+
+    HWY_INLINE Between(Vector position, float lower, float upper, int cells) {
+        const Tag d;
+        const Whole di;
+        const Vector size = hn::Set(d, std::max(upper - lower, 1e-30f)), count = hn::Set(d, static_cast<float>(cells));
+        const Vector at = hn::MulSub(hn::Div(hn::Sub(position, hn::Set(d, lower)), size), count, hn::Set(d, 0.5f));
+        const Vector inside = hn::Min(hn::Max(at, hn::Zero(d)), hn::Set(d, static_cast<float>(cells - 1)));
+        low = hn::Min(hn::ConvertTo(di, inside), hn::Set(di, std::max(cells - 2, 0)));
+        share = hn::Sub(inside, hn::ConvertTo(d, low));
+    }
+};
+
+/// Trilinear between the cells about a position where `hit` holds; where all of them are missing, the nearest cell's stand-in.
+HWY_INLINE Slots in_grid(const GridSites& grid, LaneMask hit, const Vec3& position) {
+    const Tag d;
+    const Whole di;
+    const vec3 &lower = grid.box.lower, &upper = grid.box.upper;
+    const Between x(position.x, lower.x, upper.x, grid.size.x), y(position.y, lower.y, upper.y, grid.size.y),
+        z(position.z, lower.z, upper.z, grid.size.z);
+    Slots slots;
+    Vector most = hn::Set(d, -1.0f);
+    Index nearest = hn::Zero(di);
+    for (int k = 0; k < 8; ++k) {
+        const int i = k & 1, j = (k >> 1) & 1, l = k >> 2;
+        if (i >= grid.size.x || j >= grid.size.y || l >= grid.size.z) continue;
+        const Index across = hn::Add(x.low, hn::Set(di, i)), up = hn::Add(y.low, hn::Set(di, j)),
+                    along = hn::Add(z.low, hn::Set(di, l));
+        const Index cell =
+            hn::Add(hn::Mul(hn::Add(hn::Mul(along, hn::Set(di, grid.size.y)), up), hn::Set(di, grid.size.x)), across);
+        const Vector weight = hn::Mul(hn::Mul(part(x.share, i), part(y.share, j)), part(z.share, l));
+        const auto more = hn::Gt(weight, most);
+        most = hn::Max(most, weight), nearest = hn::IfThenElse(hn::RebindMask(di, more), cell, nearest);
+        add(slots, k, listed(grid.cache, hn::RebindMask(di, hit), cell), weight);
+    }
+    const auto none = hn::And(hn::Eq(slots.sum, hn::Zero(d)), hit);
+    if (!hn::AllFalse(d, none)) {
+        Slots instead;
+        add(instead, 0, listed(grid.nearest, hn::RebindMask(di, none), nearest), hn::Set(d, 1.0f));
+        slots.cache[0] = hn::IfThenElse(hn::RebindMask(di, none), instead.cache[0], slots.cache[0]);
+        slots.weight[0] = hn::IfThenElse(none, instead.weight[0], slots.weight[0]);
+        slots.sum = hn::IfThenElse(none, instead.sum, slots.sum);
+    }
+    return slots;
+}
+
+/// Where a vector of pixels lies in the light map: u, v, how much its normal agrees with the front's, and 2 where there is a
+/// chart, 1 where there is none, 0 where nothing was hit.
+void look_up_charts(const CacheSites& sites, const GBuffer& g, std::size_t first, std::size_t count, float* places) {
+    const hn::FixedTag<float, 4> d4;
+    for (std::size_t k = 0; k < count; ++k) {
+        const std::uint32_t triangle = g.triangle[first + k];
+        float* const place = places + 4 * k;
+        place[3] = triangle == no_hit ? 0.0f : 1.0f;
+        if (triangle == no_hit || g.instance[first + k] != 0 || sites.map.size == 0) continue;
+        const std::uint32_t plane = sites.map.plane_of[triangle];
+        if (plane == no_chart) continue;
+        const float* const column = &sites.map.planes[plane].column[0].x;
+        const vec3 &p = g.position[first + k], &n = g.geometric_normal[first + k];
+        auto sum = hn::Load(d4, column + 12);
+        for (int axis = 0; axis < 3; ++axis) {
+            const auto by = hn::ConcatUpperLower(d4, hn::Set(d4, n[axis]), hn::Set(d4, p[axis]));
+            sum = hn::MulAdd(hn::Load(d4, column + 4 * axis), by, sum);
+        }
+        hn::Store(sum, d4, place);
+        place[3] = 2.0f;
+    }
+}
+
+void FindCaches(const CacheSites& sites, const GBuffer& g, std::size_t first, std::size_t count, NearCaches& near) {
+    const Tag d;
+    const Whole di;
+    for (std::size_t at = 0; at < count; at += lanes) {
+        const std::size_t here = std::min(lanes, count - at);
+        alignas(64) float places[4 * lanes] = {};
+        look_up_charts(sites, g, first + at, here, places);
+        Vector u, v, facing, state;
+        hn::LoadInterleaved4(d, places, u, v, facing, state);
+        // The map's caches see what the front sees.
+        const auto mapped = hn::And(hn::Eq(state, hn::Set(d, 2.0f)), hn::Ge(facing, hn::Zero(d)));
+        Slots map;
+        if (!hn::AllFalse(d, mapped)) map = in_map(sites.map, mapped, u, v);
+        const auto other = hn::And(hn::Gt(state, hn::Zero(d)), hn::Eq(map.sum, hn::Zero(d)));
+        if (hn::AllFalse(d, other) || sites.grid.size.x == 0) {
+            map.store(NearCaches::slots, at, near);
+            continue;
+        }
+        alignas(64) float places3[3 * lanes] = {};
+        std::copy_n(&g.position[first + at].x, 3 * here, places3);
+        Vec3 position;
+        hn::LoadInterleaved3(d, places3, position.x, position.y, position.z);
+        const vec3& lower = sites.grid.box.lower;  // undefined where nothing was hit
+        position = choose(other, position, {hn::Set(d, lower.x), hn::Set(d, lower.y), hn::Set(d, lower.z)});
+        Slots both = in_grid(sites.grid, other, position);
+        for (int k = 0; k < NearCaches::slots; ++k) {
+            both.cache[k] = hn::IfThenElse(hn::RebindMask(di, other), both.cache[k], map.cache[k]);
+            both.weight[k] = hn::IfThenElse(other, both.weight[k], map.weight[k]);
+        }
+        both.sum = hn::IfThenElse(other, both.sum, map.sum);
+        both.store(NearCaches::slots, at, near);
+    }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace interreflect
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace interreflect {
+
+HWY_EXPORT(FindCaches);
+
+CacheFinder::CacheFinder(const CacheSites& sites, const GBuffer& gbuffer) : sites_(sites), gbuffer_(gbuffer) {
     if (sites.pixels) {
         of_pixel_ = Buffer<std::uint32_t>(gbuffer.pixels(), no_cache);
         std::uint32_t next = 0;
@@ -27,69 +208,17 @@ CacheFinder::CacheFinder(const CacheSites& sites, const GBuffer& gbuffer, const 
     }
 }
 
-NearCaches CacheFinder::find(std::size_t pixel) const {
-    NearCaches near;
-    if (!gbuffer_.hit(pixel)) return near;
-    if (sites_.pixels)
-        near.add(of_pixel_[pixel], 1.0f);
-    else if (!in_map(pixel, near))
-        in_grid(pixel, near);
-    return near;
-}
-
-bool CacheFinder::in_map(std::size_t pixel, NearCaches& near) const {
-    const LightMapSites& map = sites_.map;
-    const std::uint32_t triangle = gbuffer_.triangle[pixel];
-    if (map.size == 0 || gbuffer_.instance[pixel] != 0) return false;
-    const vec2* at = map.texcoord.data() + 3 * static_cast<std::size_t>(triangle);
-    if (at->x < 0.0f) return false;
-    const Corners c = world_corners(*scene_.geometry, 0, triangle);
-    const vec3 e1 = c.b - c.a, e2 = c.c - c.a, normal = glm::cross(e1, e2), to = gbuffer_.position[pixel] - c.a;
-    // The map's caches see what the front sees.
-    if (glm::dot(normal, gbuffer_.geometric_normal[pixel]) < 0.0f) return false;
-    const float scale = 1.0f / glm::dot(normal, normal);
-    const float u = glm::dot(glm::cross(to, e2), normal) * scale, v = glm::dot(glm::cross(e1, to), normal) * scale;
-    const vec2 texel = at[0] * (1.0f - u - v) + at[1] * u + at[2] * v - 0.5f;
-    const vec2 low = glm::floor(texel), share = texel - low;
-    for (int k = 0; k < 4; ++k) {
-        const int x = static_cast<int>(low.x) + (k & 1), y = static_cast<int>(low.y) + (k >> 1);
-        if (x < 0 || y < 0 || x >= map.size || y >= map.size) continue;
-        const std::uint32_t cache =
-            map.cache[static_cast<std::size_t>(y) * static_cast<std::size_t>(map.size) + static_cast<std::size_t>(x)];
-        const float weight = ((k & 1) != 0 ? share.x : 1.0f - share.x) * ((k >> 1) != 0 ? share.y : 1.0f - share.y);
-        if (cache != no_cache && weight > 0.0f) near.add(cache, weight);
+void CacheFinder::find(std::size_t first, int count, NearCaches& near) const {
+    if (!sites_.pixels) {
+        HWY_DYNAMIC_DISPATCH(FindCaches)(sites_, gbuffer_, first, static_cast<std::size_t>(count), near);
+        return;
     }
-    normalise(near);
-    return near.count > 0;
-}
-
-void CacheFinder::in_grid(std::size_t pixel, NearCaches& near) const {
-    const GridSites& grid = sites_.grid;
-    if (grid.size.x == 0) return;
-    const vec3 size = grid.box.upper - grid.box.lower;
-    const vec3 at = (gbuffer_.position[pixel] - grid.box.lower) / glm::max(size, vec3(1e-30f)) * vec3(grid.size) - 0.5f;
-    const vec3 inside = glm::clamp(at, vec3(0.0f), vec3(grid.size - 1));
-    const vec3 low = glm::min(glm::floor(inside), vec3(glm::max(grid.size - 2, ivec3(0)))), share = inside - low;
-    std::size_t nearest = 0;
-    float most = -1.0f;
-    for (int k = 0; k < 8; ++k) {
-        float weight = 1.0f;
-        std::size_t cell = 0, stride = 1;
-        bool exists = true;
-        for (int axis = 0; axis < 3; ++axis) {
-            const int step = (k >> axis) & 1;
-            const int number = static_cast<int>(low[axis]) + step;
-            exists = exists && number < grid.size[axis];
-            weight *= step != 0 ? share[axis] : 1.0f - share[axis];
-            cell += static_cast<std::size_t>(number) * stride;
-            stride *= static_cast<std::size_t>(grid.size[axis]);
-        }
-        if (!exists) continue;
-        if (weight > most) most = weight, nearest = cell;
-        if (weight > 0.0f && grid.cache[cell] != no_cache) near.add(grid.cache[cell], weight);
+    for (int slot = 0; slot < NearCaches::slots; ++slot) std::fill_n(near.weight[slot], NearCaches::length, 0.0f);
+    for (int k = 0; k < count; ++k) {
+        const std::uint32_t own = of_pixel_[first + static_cast<std::size_t>(k)];
+        near.cache[0][k] = own == no_cache ? 0 : own, near.weight[0][k] = own == no_cache ? 0.0f : 1.0f;
     }
-    if (near.count == 0 && grid.nearest[nearest] != no_cache) near.add(grid.nearest[nearest], 1.0f);
-    normalise(near);
 }
 
 }  // namespace interreflect
+#endif

@@ -1,21 +1,25 @@
 /// Which caches a pixel's light is interpolated from.
 #pragma once
-#include <array>
+#include <cstdint>
 
 #include "data/gbuffer.h"
 #include "data/light_caches.h"
-#include "data/scene.h"
 
 namespace interreflect {
 
-/// At most eight; the weights sum up to 1.
+/// Of a run of pixels, slot by slot: at most eight each. The weights of a pixel sum up to 1, or to 0 where no cache is near or
+/// nothing was hit; slots that are not used weigh 0.
 struct NearCaches {
-    std::array<std::uint32_t, 8> cache;
-    std::array<float, 8> weight;
-    int count = 0;
+    static constexpr int length = 256, slots = 8;
 
-    void add(std::uint32_t number, float by) {
-        cache[static_cast<std::size_t>(count)] = number, weight[static_cast<std::size_t>(count++)] = by;
+    alignas(64) std::uint32_t cache[slots][length];
+    alignas(64) float weight[slots][length];
+
+    /// Slots of a pixel that are used.
+    int count(int pixel) const {
+        int used = 0;
+        for (const auto& slot : weight) used += slot[pixel] > 0.0f ? 1 : 0;
+        return used;
     }
 };
 
@@ -23,17 +27,13 @@ struct NearCaches {
 /// their weight to the others [Jendersie et al. 2016, 3.2].
 class CacheFinder {
   public:
-    CacheFinder(const CacheSites& sites, const GBuffer& gbuffer, const Scene& scene);
-    /// None where nothing was hit, or where no cache is near.
-    NearCaches find(std::size_t pixel) const;
+    CacheFinder(const CacheSites& sites, const GBuffer& gbuffer);
+    /// Of pixels [first, first + count), at most NearCaches::length.
+    void find(std::size_t first, int count, NearCaches& near) const;
 
   private:
-    bool in_map(std::size_t pixel, NearCaches& near) const;
-    void in_grid(std::size_t pixel, NearCaches& near) const;
-
     const CacheSites& sites_;
     const GBuffer& gbuffer_;
-    const Scene& scene_;
     Buffer<std::uint32_t> of_pixel_;  // PixelCaches
 };
 

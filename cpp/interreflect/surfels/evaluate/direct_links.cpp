@@ -66,33 +66,38 @@ SurfelLight evaluate(const DirectLinks&, const CacheLinks& links, const NodeLigh
                      const GBuffer& gbuffer, const Scene& scene) {
     check(links, light, sites);
     SurfelLight made = empty_surfel_light(gbuffer);
-    const CacheFinder finder(sites, gbuffer, scene);
+    const CacheFinder finder(sites, gbuffer);
     const auto per_cache = static_cast<std::size_t>(links.per_cache);
     std::vector<Counts> counts(tile_count(gbuffer.width, gbuffer.height, tile_size));
     parallel_tiles(gbuffer.width, gbuffer.height, tile_size, [&](const Tile& tile) {
-        for (int y = tile.y0; y < tile.y1; ++y)
+        NearCaches near;
+        for (int y = tile.y0; y < tile.y1; ++y) {
+            const std::size_t row = static_cast<std::size_t>(y) * static_cast<std::size_t>(gbuffer.width);
+            finder.find(row + static_cast<std::size_t>(tile.x0), tile.x1 - tile.x0, near);
             for (int x = tile.x0; x < tile.x1; ++x) {
-                const std::size_t pixel =
-                    static_cast<std::size_t>(y) * static_cast<std::size_t>(gbuffer.width) + static_cast<std::size_t>(x);
+                const std::size_t pixel = row + static_cast<std::size_t>(x);
+                const int of = x - tile.x0;
                 Reflected sum;
                 if (gbuffer.hit(pixel)) {
                     const PixelSurface surface(gbuffer, scene, pixel);
-                    const NearCaches near = finder.find(pixel);
-                    for (int k = 0; k < near.count; ++k) {
-                        const std::size_t first = near.cache[static_cast<std::size_t>(k)] * per_cache;
+                    for (int k = 0; k < NearCaches::slots; ++k) {
+                        if (!(near.weight[k][of] > 0.0f)) continue;
+                        const std::size_t first = near.cache[k][of] * per_cache;
                         for (std::size_t i = first; i < first + per_cache; ++i)
                             sum.add(surface,
                                     links.kind == CacheLinks::Kind::cones ? beam_of(links.cones[i], links, light)
                                                                           : beam_of(i, links, light),
-                                    near.weight[static_cast<std::size_t>(k)]);
+                                    near.weight[k][of]);
                     }
                     Counts& mine = counts[tile.index];
-                    mine.links += static_cast<std::uint64_t>(near.count) * per_cache;
-                    ++(near.count > 0 ? mine.covered_pixels : mine.uncovered_pixels);
+                    const int used = near.count(of);
+                    mine.links += static_cast<std::uint64_t>(used) * per_cache;
+                    ++(used > 0 ? mine.covered_pixels : mine.uncovered_pixels);
                 }
                 made.gathered.irradiance[pixel] = sum.irradiance;
                 made.glossy.radiance[pixel] = sum.glossy;
             }
+        }
     });
     for (const Counts& one : counts) made.counts += one;
     return made;

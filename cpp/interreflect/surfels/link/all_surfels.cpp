@@ -5,6 +5,7 @@
 #include "math/parallel.h"
 #include "math/rng.h"
 #include "math/spherical_harmonics.h"
+#include "surfels/light_kernel.h"
 #include "surfels/link/visible_surfels.h"
 
 namespace interreflect {
@@ -40,7 +41,7 @@ LightCaches light_caches(const AllSurfels& technique, const CacheSites& sites, c
             choose(n, technique.samples, random, chosen);
             const float each = chosen.empty() ? 1.0f : static_cast<float>(n) / static_cast<float>(chosen.size());
             visible.look(sites, cache, chosen, each, seen, counts[begin / caches_a_block]);
-            float colours[3][most_bands * most_bands] = {};
+            alignas(64) float colours[3][most_bands * most_bands] = {};
             for (std::uint32_t i = 0; i < n; ++i) {
                 const vec3 radiance =
                     light.value[surfels.tree.node[i]] / (pi * (light.radiosity ? 1.0f : surfels.surfels.area[i]));

@@ -35,7 +35,7 @@ CacheLinks make_links(const LinkKnobs& knobs, CacheLinks::Kind kind, const Cache
     links.unit = unit_of_links(surfels, knobs), links.radiosity = knobs.pull == "radiosity";
     links.caches = sites.size(), links.nodes = surfels.tree.nodes();
     if (cones) {
-        links.cones = Buffer<ConeLink>(count, ConeLink{0, 0, 0, 0, 0});
+        links.cones = Buffer<ConeLink>(count + 16, ConeLink{0, 0, 0, 0, 0});  // a vector that starts at the last may read on
     } else {
         links.node = Buffer<std::uint32_t>(count, 0U);
         // A vector that starts at the last coefficient may read on.

@@ -45,6 +45,19 @@ vec3 inset(const vec3& weights, const vec2* at, float area) {
 
 float cross(const vec2& a, const vec2& b) { return a.x * b.y - a.y * b.x; }
 
+/// Texel coordinates `at` the corners, continued over the triangle's plane.
+ChartPlane plane_of(const Corners& c, const vec2* at) {
+    const vec3 e1 = c.b - c.a, e2 = c.c - c.a, normal = glm::cross(e1, e2);
+    const float scale = 1.0f / glm::dot(normal, normal);
+    const vec3 first = glm::cross(e2, normal) * scale, second = glm::cross(normal, e1) * scale;  // gradients of the weights
+    const vec2 t1 = at[1] - at[0], t2 = at[2] - at[0];
+    const vec3 u = first * t1.x + second * t2.x, v = first * t1.y + second * t2.y;
+    ChartPlane plane;
+    for (int axis = 0; axis < 3; ++axis) plane.column[axis] = {u[axis], v[axis], normal[axis], 0.0f};
+    plane.column[3] = {at[0].x - glm::dot(u, c.a), at[0].y - glm::dot(v, c.a), 0.0f, 0.0f};
+    return plane;
+}
+
 class Map {
   public:
     Map(int size, const Scene& scene)
@@ -125,6 +138,21 @@ class Map {
 
 }  // namespace
 
+void lay_planes(LightMapSites& map, const Scene& scene) {
+    const Group& still = scene.geometry->groups.front();
+    map.plane_of = Buffer<std::uint32_t>(scene.geometry->arrays->triangles.size(), no_chart);
+    std::vector<ChartPlane> planes;
+    for (std::uint32_t t = still.first_triangle; map.size > 0 && t < still.first_triangle + still.triangle_count; ++t) {
+        const vec2* at = map.texcoord.data() + 3 * static_cast<std::size_t>(t);
+        const Corners c = world_corners(*scene.geometry, 0, t);
+        if (at->x < 0.0f || glm::cross(c.b - c.a, c.c - c.a) == vec3(0)) continue;
+        map.plane_of[t] = static_cast<std::uint32_t>(planes.size());
+        planes.push_back(plane_of(c, at));
+    }
+    map.planes = Buffer<ChartPlane>(planes.size());
+    std::ranges::copy(planes, map.planes.begin());
+}
+
 CacheSites place_caches(const LightMap& technique, const Scene& scene, const Intersector& intersector, const Bounds& box,
                         std::span<const vec2> texcoord) {
     check(technique, scene, texcoord);
@@ -152,6 +180,7 @@ CacheSites place_caches(const LightMap& technique, const Scene& scene, const Int
     std::ranges::copy(map.numbers(), sites.map.cache.begin());
     sites.map.texcoord = Buffer<vec2>(texcoord.size());
     std::ranges::copy(texcoord, sites.map.texcoord.begin());
+    lay_planes(sites.map, scene);
     sites.counts.caches = n;
     return sites;
 }

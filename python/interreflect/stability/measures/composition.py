@@ -45,7 +45,7 @@ def negative_radiance(trial: Trial) -> Reading:
     caches = getattr(frame.history, "caches", None)
     if caches is None:
         return Reading(_negative(np.asarray(frame.indirect, np.float64)), frame.image)
-    bands, held = caches.bands, np.asarray(caches.coefficients, np.float64)
+    bands, held = caches.bands, np.float64(caches.coefficients) * np.asarray(caches.unit)[:, None]
     colours = 1 if caches.chrominance_bands not in (0, bands) else 3  # luma comes first
     mean = held[:, : colours * bands**2].reshape(len(held), colours, bands**2).mean(1)
     return Reading(_negative(mean @ harmonics(_sphere(DIRECTIONS), bands).T), frame.image)

@@ -1,0 +1,167 @@
+#include "surfels/evaluate/lobe_sums.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "math/spherical_harmonics.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "surfels/evaluate/lobe_sums.cpp"
+#include <hwy/foreach_target.h>
+// clang-format off
+#include <hwy/highway.h>
+// clang-format on
+
+#include "math/harmonic_lanes-inl.h"
+
+// Pixels side by side lie between the same few caches. Each cache that a vector of pixels uses is taken once for all of them: a
+// multiply-add for each of its coefficients that the lobes need, nine a colour for the cosine. Roofline: four caches for sixteen
+// pixels take 108 multiply-adds, or 7 a pixel; pixels that share nothing 16 times as many.
+HWY_BEFORE_NAMESPACE();
+namespace interreflect {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+constexpr std::size_t lanes = hn::MaxLanes(Tag());
+constexpr int most_coefficients = 3 * most_bands * most_bands;
+
+/// What each coefficient weighs in a vector of lobes; bands that weigh nothing in all of them are left out.
+struct LobeWeights {
+    alignas(64) float value[most_bands * most_bands][lanes];
+    bool used[most_bands];
+
+    template <int bands>
+    HWY_INLINE void set(const Vec3& axis, Vector exponent) {
+        const Tag d;
+        Vector scale[bands];
+        for (int l = 0; l < bands; ++l) {
+            scale[l] = band_scale(l, exponent);
+            used[l] = !hn::AllTrue(d, hn::Eq(scale[l], hn::Zero(d)));
+        }
+        const auto& norms = detail::harmonic_norms();
+        visit_harmonics<bands>(axis, [&](int l, int m, Vector p, Vector cosine, Vector sine) HWY_ATTR {
+            const float norm = norms[static_cast<std::size_t>(l)][static_cast<std::size_t>(m)];
+            const Vector part = hn::Mul(hn::Mul(hn::Set(d, norm), p), scale[l]);
+            hn::Store(hn::Mul(part, cosine), d, value[l * l + l + m]);
+            if (m > 0) hn::Store(hn::Mul(part, sine), d, value[l * l + l - m]);
+        });
+    }
+
+  private:
+    /// lobe_scale
+    static HWY_INLINE Vector band_scale(int l, Vector n) {
+        const Tag d;
+        const Vector one = hn::Set(d, 1.0f);
+        const auto plus = [&](int k) HWY_ATTR { return hn::Add(n, hn::Set(d, static_cast<float>(k))); };
+        Vector scale = l % 2 == 0 ? one : hn::Div(plus(1), plus(2));
+        for (int k = l % 2 + 2; k <= l; k += 2) scale = hn::Mul(scale, hn::Div(plus(2 - k), plus(1 + k)));
+        return scale;
+    }
+};
+
+/// The coefficients of a cache as floats, without its unit.
+HWY_INLINE void load_cache(const LightCaches& caches, std::size_t cache, float* coefficients) {
+    const Tag d;
+    const hn::Rebind<hwy::float16_t, Tag> half;
+    const auto stride = static_cast<std::size_t>(caches.stride());
+    const auto* from = reinterpret_cast<const hwy::float16_t*>(caches.coefficients.data()) + cache * stride;
+    for (std::size_t i = 0; i < stride; i += lanes) hn::Store(hn::PromoteTo(d, hn::LoadU(half, from + i)), d, coefficients + i);
+}
+
+/// A channel of a cache over the lobes.
+HWY_INLINE Vector over(const LobeWeights& lobes, const float* coefficients, int bands) {
+    const Tag d;
+    Vector sum = hn::Zero(d);
+    for (int l = 0; l < bands; ++l)
+        if (lobes.used[l])
+            for (int i = l * l; i < (l + 1) * (l + 1); ++i)
+                sum = hn::MulAdd(hn::Set(d, coefficients[i]), hn::Load(d, lobes.value[i]), sum);
+    return sum;
+}
+
+/// A vector of pixels' slots, of which each cache is taken once.
+class Shared {
+  public:
+    HWY_INLINE Shared(const NearCaches& near, int at) {
+        const Tag d;
+        for (int k = 0; k < NearCaches::slots; ++k) {
+            cache_[k] = hn::Load(Number(), near.cache[k] + at), weight_[k] = hn::Load(d, near.weight[k] + at);
+            if (!hn::AllTrue(d, hn::Eq(weight_[k], hn::Zero(d)))) slots_ = k + 1;
+        }
+        numbers_ = near.cache[0] + at;
+    }
+    /// Calls take(cache, weights) for each.
+    template <class Take>
+    HWY_INLINE void for_each(const Take& take) {
+        const Tag d;
+        for (int k = 0; k < slots_; ++k)
+            for (;;) {
+                const std::intptr_t first = hn::FindFirstTrue(d, hn::Gt(weight_[k], hn::Zero(d)));
+                if (first < 0) break;
+                const std::uint32_t cache = numbers_[k * NearCaches::length + first];
+                const auto wanted = hn::Set(Number(), cache);
+                Vector weight = hn::Zero(d);
+                for (int other = k; other < slots_; ++other) {
+                    const auto same = hn::RebindMask(d, hn::Eq(cache_[other], wanted));
+                    weight = hn::Add(weight, hn::IfThenElseZero(same, weight_[other]));
+                    weight_[other] = hn::IfThenZeroElse(same, weight_[other]);
+                }
+                take(cache, weight);
+            }
+    }
+
+  private:
+    using Number = hn::RebindToUnsigned<Tag>;
+    hn::Vec<Number> cache_[NearCaches::slots];
+    Vector weight_[NearCaches::slots];
+    const std::uint32_t* numbers_;
+    int slots_ = 0;
+};
+
+/// (Y, Co, Cg) to (R, G, B) where the caches have them; not below 0.
+HWY_INLINE Vec3 colour_of(const Vec3& mean, bool ycocg) {
+    const Vector zero = hn::Zero(Tag());
+    Vec3 colour = mean;
+    if (ycocg) {
+        const Vector t = hn::Sub(mean.x, mean.z);
+        colour = {hn::Add(t, mean.y), hn::Add(mean.x, mean.z), hn::Sub(t, mean.y)};
+    }
+    return {hn::Max(colour.x, zero), hn::Max(colour.y, zero), hn::Max(colour.z, zero)};
+}
+
+void SumLobes(const LightCaches& caches, const NearCaches& near, int count, Lobes& lobes) {
+    const Tag d;
+    LobeWeights weights;
+    alignas(64) float coefficients[most_coefficients + 2 * lanes];
+    for (int at = 0; at < count; at += static_cast<int>(lanes)) {
+        const Vec3 axis{hn::Load(d, lobes.axis[0] + at), hn::Load(d, lobes.axis[1] + at), hn::Load(d, lobes.axis[2] + at)};
+        const Vector exponent = hn::Load(d, lobes.exponent + at);
+        [&]<int... less>(std::integer_sequence<int, less...>) {
+            ((caches.bands == less + 1 ? weights.set<less + 1>(axis, exponent) : void()), ...);
+        }
+        (std::make_integer_sequence<int, most_bands>());
+        Vec3 mean{hn::Zero(d), hn::Zero(d), hn::Zero(d)};
+        Shared(near, at).for_each([&](std::uint32_t cache, Vector weight) HWY_ATTR {
+            load_cache(caches, cache, coefficients);
+            const Vec3 light{over(weights, coefficients, caches.bands),
+                             over(weights, coefficients + caches.luma(), caches.chrominance_bands),
+                             over(weights, coefficients + caches.luma() + caches.chrominance(), caches.chrominance_bands)};
+            mean = moved(mean, light, hn::Mul(weight, hn::Set(d, caches.unit[cache])));
+        });
+        store3(colour_of(mean, caches.ycocg), &lobes.mean[at].x);
+    }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace interreflect
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace interreflect {
+HWY_EXPORT(SumLobes);
+
+void sum_lobes(const LightCaches& caches, const NearCaches& near, int count, Lobes& lobes) {
+    HWY_DYNAMIC_DISPATCH(SumLobes)(caches, near, count, lobes);
+}
+}  // namespace interreflect
+#endif
