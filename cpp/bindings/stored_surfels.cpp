@@ -64,6 +64,12 @@ void each_field(CacheLinks& l, const Visit& visit) {
     each_field(l.counts, visit);
 }
 
+template <class Visit>
+void each_field(LinkCandidates& l, const Visit& visit) {
+    each_field(l.nodes, visit);
+    visit("child", l.child);
+}
+
 struct Store {
     py::dict& into;
     py::handle owner;
@@ -134,6 +140,7 @@ std::shared_ptr<Product> restored(const py::dict& stored, const Context&... cont
 
 void bind_stored_surfels(py::module_& m) {
     bind_stored<ClusteredSurfels>(m), bind_stored<CacheSites>(m), bind_stored<CacheLinks>(m);
+    bind_stored<LinkCandidates>(m);
     m.def(
         "surfels_from_store",
         [](const py::dict& stored, const BoundScene& s) { return restored<ClusteredSurfels>(stored, s.scene); },
@@ -145,6 +152,13 @@ void bind_stored_surfels(py::module_& m) {
         "links_from_store",
         [](const py::dict& stored, const CacheSites& sites, const ClusteredSurfels& surfels) {
             return restored<CacheLinks>(stored, sites, surfels);
+        },
+        py::arg("stored"), py::arg("sites"), py::arg("surfels"),
+        "What `to_store` gave; every number is checked, also against what they link.");
+    m.def(
+        "candidates_from_store",
+        [](const py::dict& stored, const CacheSites& sites, const ClusteredSurfels& surfels) {
+            return restored<LinkCandidates>(stored, sites, surfels);
         },
         py::arg("stored"), py::arg("sites"), py::arg("surfels"),
         "What `to_store` gave; every number is checked, also against what they link.");

@@ -102,6 +102,10 @@ void bind_links(py::module_& m) {
             "(caches, links): node of the tree; a copy.")
         .def_readonly("counts", &CacheLinks::counts)
         .def_property_readonly("bytes", &CacheLinks::bytes);
+    py::class_<LinkCandidates, std::shared_ptr<LinkCandidates>>(m, "LinkCandidates",
+                                                                "Of every cache a tree of links, from which every frame chooses.")
+        .def_property_readonly("counts", [](const LinkCandidates& self) { return self.nodes.counts; })
+        .def_property_readonly("bytes", &LinkCandidates::bytes);
     py::class_<SharedCut, std::shared_ptr<SharedCut>>(
         m, "SharedCut", "One cut of the tree for every cache, with all that links of any kind keep of it.")
         .def_property_readonly("bytes", &SharedCut::bytes);
@@ -241,6 +245,14 @@ void bind_precomputation(py::module_& m) {
     };
     bind_link(static_cast<const ShLinks*>(nullptr));
     bind_link(static_cast<const RuntimeProjection*>(nullptr));
+    m.def(
+        "link",
+        [](const FluxLinks& technique, const CacheSites& sites, const ClusteredSurfels& surfels, const BoundScene& s) {
+            return run(
+                [&] { return std::make_shared<LinkCandidates>(link(technique, sites, surfels, s.scene, *s.intersector)); });
+        },
+        py::arg("technique"), py::arg("sites"), py::arg("surfels"), py::arg("scene"),
+        "Links from which every frame chooses: `choose_links`.");
 }
 
 /// A scene's point, spot and directional lights alone.
@@ -265,6 +277,18 @@ void bind_lamp_shadow(py::module_& m) {
         py::arg("technique"), py::arg("scene"), py::arg("gbuffer"), py::arg("seed") = 0,
         "What pixels reflect of point, spot and directional lights alone: emitters come through links.");
 }
+
+/// `used`: none, or a mark for every cache.
+struct Marks {
+    py::array_t<std::uint8_t> array;  // keeps the values
+    std::span<const std::uint8_t> values;
+
+    explicit Marks(const py::object& used) {
+        if (used.is_none()) return;
+        array = exact_array<std::uint8_t>(used, "used");
+        values = {array.data(), static_cast<std::size_t>(array.size())};
+    }
+};
 
 void bind_run_time(py::module_& m) {
     bind_lamp_shadow<TracedShadows>(m);
@@ -293,15 +317,22 @@ void bind_run_time(py::module_& m) {
         py::arg("surfels"), py::arg("radiance"), py::arg("radiosity") = false,
         "The sum of the surfels' flux under every node, or the mean of their radiosity.");
     m.def(
+        "choose_links",
+        [](const FluxLinks& technique, const LinkCandidates& candidates, const ClusteredSurfels& surfels, const NodeLight& light,
+           const py::object& used) {
+            const Marks marks(used);
+            return run([&] {
+                return std::make_shared<CacheLinks>(choose_links(technique, candidates, surfels.tree, light, marks.values));
+            });
+        },
+        py::arg("technique"), py::arg("candidates"), py::arg("surfels"), py::arg("light"), py::arg("used") = py::none(),
+        "The links that bring every cache most of this light.");
+    m.def(
         "light_caches",
         [](const CacheLinks& links, const NodeLight& light, int bands, int chrominance_bands, const py::object& used) {
-            std::span<const std::uint8_t> marks;
-            if (!used.is_none()) {
-                const auto array = exact_array<std::uint8_t>(used, "used");
-                marks = {array.data(), static_cast<std::size_t>(array.size())};
-            }
+            const Marks marks(used);
             return run([&] {
-                return std::make_shared<LightCaches>(light_caches(links, light, {bands, chrominance_bands}, marks));
+                return std::make_shared<LightCaches>(light_caches(links, light, {bands, chrominance_bands}, marks.values));
             });
         },
         py::arg("links"), py::arg("light"), py::arg("bands"), py::arg("chrominance_bands") = 0, py::arg("used") = py::none(),

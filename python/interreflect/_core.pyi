@@ -3218,6 +3218,18 @@ class CacheLinks:
         """
         Whether they take the nodes' radiosity in place of flux.
         """
+class LinkCandidates:
+    """
+    Of every cache a tree of links, from which every frame chooses.
+    """
+
+    @property
+    def bytes(self) -> int:
+        ...
+
+    @property
+    def counts(self) -> Counts:
+        ...
 class SharedCut:
     """
     One cut of the tree for every cache, with all that links of any kind keep of it.
@@ -3494,6 +3506,49 @@ class PixelCaches:
 
     def __eq__(self, other: object) -> bool:
         ...
+class FluxLinks:
+    """Links chosen in every frame by the light that they bring, out of more that are stored as cones."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self, *, links: int=..., bands: int=..., rays: int=..., near_rays: int=..., pull: str=..., candidates: int=...) -> None:
+        ...
+
+    def replace(self, *, links: int=..., bands: int=..., rays: int=..., near_rays: int=..., pull: str=..., candidates: int=...) -> FluxLinks:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+
+    @property
+    def links(self) -> int:
+        ...
+
+    @property
+    def bands(self) -> int:
+        ...
+
+    @property
+    def rays(self) -> int:
+        ...
+
+    @property
+    def near_rays(self) -> int:
+        ...
+
+    @property
+    def pull(self) -> str:
+        ...
+
+    @property
+    def candidates(self) -> int:
+        ...
 class RuntimeProjection:
     """Links that are cones, projected to spherical harmonics when a cache is lit."""
     description: ClassVar[dict[str, Any]]
@@ -3657,6 +3712,14 @@ def bounce_maps(scene: Scene, lights: VirtualLights, size: typing.SupportsInt | 
     """
     What virtual lights see.
     """
+def candidates_from_store(stored: dict[str, typing.Any], sites: CacheSites, surfels: ClusteredSurfels) -> LinkCandidates:
+    """
+    What `to_store` gave; every number is checked, also against what they link.
+    """
+def choose_links(technique: FluxLinks, candidates: LinkCandidates, surfels: ClusteredSurfels, light: NodeLight, used: typing.Any | None=None) -> CacheLinks:
+    """
+    The links that bring every cache most of this light.
+    """
 def cluster_lights(technique: EveryRsmPixel | KMeans, seeds: VirtualLights, maps: LightMaps, last: VirtualLights | None=None, seed: typing.SupportsInt | typing.SupportsIndex=0) -> VirtualLights:
     """
     Virtual lights, each for several texels.
@@ -3755,6 +3818,11 @@ def link(technique: ShLinks, sites: CacheSites, surfels: ClusteredSurfels, scene
 def link(technique: RuntimeProjection, sites: CacheSites, surfels: ClusteredSurfels, scene: Scene) -> CacheLinks:
     """
     Which patches of surfels send light to each cache.
+    """
+@typing.overload
+def link(technique: FluxLinks, sites: CacheSites, surfels: ClusteredSurfels, scene: Scene) -> LinkCandidates:
+    """
+    Links from which every frame chooses: `choose_links`.
     """
 def links_from_store(stored: dict[str, typing.Any], sites: CacheSites, surfels: ClusteredSurfels) -> CacheLinks:
     """
@@ -3911,6 +3979,11 @@ def to_store(product: CacheSites) -> dict[str, typing.Any]:
     """
 @typing.overload
 def to_store(product: CacheLinks) -> dict[str, typing.Any]:
+    """
+    Every array (a view) and number of a precomputed product, by name.
+    """
+@typing.overload
+def to_store(product: LinkCandidates) -> dict[str, typing.Any]:
     """
     Every array (a view) and number of a precomputed product, by name.
     """

@@ -309,8 +309,11 @@ def place_caches(
     return _core.place_caches(technique, scene.core, box)
 
 
-def link(technique: Any, sites: _core.CacheSites, surfels: _core.ClusteredSurfels, scene: Scene) -> _core.CacheLinks | None:
-    """Which patches of surfels send light to each cache; None for AllSurfels, which stores nothing."""
+def link(
+    technique: Any, sites: _core.CacheSites, surfels: _core.ClusteredSurfels, scene: Scene
+) -> _core.CacheLinks | _core.LinkCandidates | None:
+    """Which patches of surfels send light to each cache; None for AllSurfels, which stores nothing. FluxLinks: what `_core.choose_links`
+    takes every frame's from."""
     return None if isinstance(technique, _core.AllSurfels) else _core.link(technique, sites, surfels, scene.core)
 
 

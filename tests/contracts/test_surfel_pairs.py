@@ -24,6 +24,7 @@ QUICK = {
     "CacheGrid": {"nx": 6, "ny": 6, "nz": 6}, "LightMap": {"texels": 48, "grid": ir.CacheGrid(nx=6, ny=6, nz=6)},
     "AllSurfels": {"samples": 200, "near_rays": 64}, "ShLinks": {"links": 96, "near_rays": 64},
     "RuntimeProjection": {"links": 96, "near_rays": 64}, "ShadowMap": {"size": 256},
+    "FluxLinks": {"links": 96, "candidates": 192, "near_rays": 64},
 }  # fmt: skip
 
 

@@ -84,6 +84,14 @@ struct CacheLinks {
     std::size_t bytes() const { return node.bytes() + coefficients.bytes() + cones.bytes(); }
 };
 
+/// What frames choose links from: of every cache a binary tree of cones, the root first, children side by side.
+struct LinkCandidates {
+    CacheLinks nodes;             // cones; places without one have factor 0
+    Buffer<std::uint16_t> child;  // of each node: place of the first of its two children among the cache's; 0: it has none
+
+    std::size_t bytes() const { return nodes.bytes() + child.bytes(); }
+};
+
 /// Incident radiance of every cache: coefficients of luma (or red), then of both chrominances (or green and blue), cache by
 /// cache. Half floats as in the paper, but each cache has its own unit: they neither overflow nor flush at any brightness.
 struct LightCaches {

@@ -131,7 +131,8 @@ void sum_cones(const CacheLinks& links, const NodeLight& light, std::size_t cach
         for (Vector& one : colour) one = hn::Zero(d);
     const std::size_t first = cache * static_cast<std::size_t>(links.per_cache),
                       end = first + static_cast<std::size_t>(links.per_cache);
-    for (std::size_t at = first; at < end; at += lanes)
+    // Places without a link come last, and no cone is as narrow as theirs.
+    for (std::size_t at = first; at < end && links.cones[at].one_less_cos != 0; at += lanes)
         add_cones<bands>(load_cones<bands>(links, light, at, std::min(lanes, end - at)), sum);
     const auto& norms = detail::harmonic_norms();
     for (int l = 0; l < bands; ++l)

@@ -121,4 +121,15 @@ void check_stored(const CacheLinks& links, const CacheSites& sites, const Cluste
     need(links.per_cache == 0 || inside, "links: one names a node that is not there");
 }
 
+void check_stored(const LinkCandidates& links, const CacheSites& sites, const ClusteredSurfels& surfels) {
+    check_stored(links.nodes, sites, surfels);
+    const auto each = static_cast<std::size_t>(links.nodes.per_cache);
+    need(links.nodes.kind == CacheLinks::Kind::cones && links.child.size() == links.nodes.caches * each,
+         "links: candidates that are no cones, or of which not each tells of its children");
+    for (std::size_t i = 0; i < links.child.size(); ++i) {
+        const std::size_t child = links.child[i];
+        need(child == 0 || (child > i % each && child + 1 < each), "links: the children of a candidate do not come after it");
+    }
+}
+
 }  // namespace interreflect

@@ -11,6 +11,7 @@ namespace interreflect {
 void check_stored(const ClusteredSurfels& surfels, const Scene& scene);
 void check_stored(const CacheSites& sites, const Scene& scene);
 void check_stored(const CacheLinks& links, const CacheSites& sites, const ClusteredSurfels& surfels);
+void check_stored(const LinkCandidates& links, const CacheSites& sites, const ClusteredSurfels& surfels);
 
 /// What follows from the arrays of a file, which must be sound.
 void complete(ClusteredSurfels& surfels, const Scene& scene);

@@ -27,7 +27,9 @@ def cut_of(technique: Any) -> Any:
     """The knobs that choose a cut of the tree; None where there is none."""
     if isinstance(technique, _core.AllSurfels):
         return None
-    return tuple((name, getattr(technique, name)) for name in ("links", "rays", "near_rays", "pull"))
+    # How many of its candidates become links, FluxLinks chooses in every frame.
+    width = "candidates" if isinstance(technique, _core.FluxLinks) else "links"
+    return tuple((name, getattr(technique, name)) for name in (width, "rays", "near_rays", "pull"))
 
 
 def without_bodies(scene: Scene) -> Scene:
@@ -59,6 +61,8 @@ def precompute(method: IlluminanceComposition, scene: Scene, pieces: Pieces) -> 
 def _links(method: IlluminanceComposition, sites: _core.CacheSites, surfels: _core.ClusteredSurfels, still: Scene, pieces: Pieces) -> Any:
     """Where pieces are kept, out of one cut for links of any kind and bands: the same bits as without."""
     technique = method.link
+    if isinstance(technique, _core.FluxLinks):
+        return pieces.take("candidates", key_of(method), lambda: link(technique, sites, surfels, still))
     cut = cut_of(technique)
     if cut is None or not pieces.keeps or len(sites) * technique.links * BYTES_OF_A_LINK > MOST_CUT_BYTES:
         return link(technique, sites, surfels, still)
@@ -92,5 +96,6 @@ def from_store(method: IlluminanceComposition, stored: Mapping[str, Any], scene:
         state |= surfel_links(method.link, surfels, pixels, without_bodies(scene))
     if parts["sites"]:
         state["sites"] = _core.sites_from_store(parts["sites"], scene.core)
-        state["links"] = _core.links_from_store(parts["links"], state["sites"], surfels) if parts["links"] else None
+        restore = _core.candidates_from_store if isinstance(method.link, _core.FluxLinks) else _core.links_from_store
+        state["links"] = restore(parts["links"], state["sites"], surfels) if parts["links"] else None
     return state

@@ -45,7 +45,7 @@ class Caches:
     """Where caches stand, and what they are linked to: None where nothing is stored."""
 
     sites: _core.CacheSites
-    links: _core.CacheLinks | None
+    links: _core.CacheLinks | _core.LinkCandidates | None
     used: NDArray[np.uint8] | None = None  # which of them the frame's pixels read; None: all of them
 
 
@@ -55,6 +55,7 @@ class CacheLight:
 
     caches: _core.LightCaches | None
     patches: _core.NodeLight
+    links: _core.CacheLinks | None  # that it came through
 
 
 @method
@@ -245,20 +246,24 @@ class IlluminanceComposition(Method):
         surfels = view.state["surfels"]
         with profile.stage("pull") as note:
             patches = note(pull(surfels, sent, getattr(self.link, "pull", "flux") == "radiosity"))
+        links = to.links
+        if isinstance(links, _core.LinkCandidates):
+            with profile.stage("choose_links") as note:
+                links = note(_core.choose_links(self.link, links, surfels, patches, to.used))
         if isinstance(self.evaluate, _core.DirectLinks):
-            return CacheLight(None, patches)
+            return CacheLight(None, patches, links)
         with profile.stage("light_caches") as note:
             seed = (view.seed + bounce) % 2**32
             window = getattr(self.evaluate, "window", "none")
             caches = note(
                 light_caches(
-                    self.link, to.links, to.sites, surfels, patches, view.scene, self.chrominance_bands, seed, window, to.used
+                    self.link, links, to.sites, surfels, patches, view.scene, self.chrominance_bands, seed, window, to.used
                 )
             )  # fmt: skip
-        return CacheLight(caches, patches)
+        return CacheLight(caches, patches, links)
 
     def gathered(self, light: CacheLight, caches: Caches, gbuffer: _core.GBuffer, scene: Scene) -> _core.SurfelLight:
-        return evaluate(self.evaluate, light.caches, caches.sites, gbuffer, scene, caches.links, light.patches)
+        return evaluate(self.evaluate, light.caches, caches.sites, gbuffer, scene, light.links, light.patches)
 
     def light_surfels(self, view: View, maps: _core.ShadowMaps | None, note: Any) -> NDArray[np.float32]:
         """(rows, columns, 3): radiance that surfels reflect of the lights', and by rays of the emitters'."""
