@@ -46,5 +46,6 @@ PYBIND11_MODULE(_core, m) {
     bind_virtual_lights(m);
     bind_surfels(m);
     bind_stored_surfels(m);
+    bind_light_volumes(m);
     bind_calibration(m);
 }

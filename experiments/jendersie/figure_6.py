@@ -22,6 +22,7 @@ def ways() -> dict[str, Any]:
     return {
         OURS: composition(),
         "voxel cones, grid of 128": ir.methods.VoxelConeTracing().replace({"grid.resolution": 128}),
+        "light propagation, grid of 32": ir.methods.LightPropagationVolumes(),
     }
 
 

@@ -18,10 +18,11 @@ LAMPS = 8
 
 
 def ways() -> dict[str, Any]:
-    """The paper's rows, as far as there are methods: cones for cones; for its other caches and its light propagation, ours."""
+    """The paper's rows, as far as there are methods: cones for cones, one cascade for its several; for its other caches, ours."""
     return {
         "composition": composition(),
         "voxel cones": ir.methods.VoxelConeTracing(glossy=ir.GlossyCone()).replace({"grid.resolution": 128}),
+        "light propagation": ir.methods.LightPropagationVolumes(),
         "clustered caches": ir.methods.ClusteredRadianceCaching(),
         "virtual area lights": ir.methods.VirtualAreaLights(),
     }

@@ -3704,6 +3704,75 @@ class DirectLinks:
 
     def __eq__(self, other: object) -> bool:
         ...
+class LightVolume:
+    """
+    The light that passes through the cells of a grid.
+    """
+
+    @property
+    def bytes(self) -> int:
+        ...
+
+    @property
+    def coefficients(self) -> numpy.typing.NDArray[numpy.float32]:
+        """
+        (z, y, x, 3, 4): radiant intensity of every cell, W/sr: of red, green and blue two bands of spherical harmonics, 1, y, z and x.
+        """
+
+    @property
+    def counts(self) -> Counts:
+        ...
+
+    @property
+    def domain(self) -> Domain:
+        """
+        The grid.
+        """
+class GeometryVolume:
+    """
+    Where surface blocks light between the cells of a grid.
+    """
+
+    @property
+    def bytes(self) -> int:
+        ...
+
+    @property
+    def coefficients(self) -> numpy.typing.NDArray[numpy.float32]:
+        """
+        (z, y, x, 4), one more of each than cells: the share of light from a direction that is blocked at a corner, two bands of spherical harmonics, 1, y, z and x.
+        """
+
+    @property
+    def counts(self) -> Counts:
+        ...
+class LightPropagation:
+    """Light goes from cell to neighbouring cell, again and again, in two bands of spherical harmonics."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self, *, iterations: int=..., negative: str=...) -> None:
+        ...
+
+    def replace(self, *, iterations: int=..., negative: str=...) -> LightPropagation:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+
+    @property
+    def iterations(self) -> int:
+        ...
+
+    @property
+    def negative(self) -> str:
+        ...
 def _rebuild(arg0: typing.Any, arg1: dict[str, typing.Any]) -> typing.Any:
     """
     Makes a technique again from its knobs (pickle).
@@ -3758,6 +3827,10 @@ def fill(technique: TracedFill | ConeFill, places: CachePlaces, pyramids: collec
     """
     The radiance that arrives at every cache.
     """
+def geometry_volume(surfels: Surfels, domain: Domain) -> GeometryVolume:
+    """
+    Where surfels block light between the cells of a grid. ValueError as `inject`.
+    """
 def glossy(technique: TracedRays | GlossyCone, pyramids: collections.abc.Sequence[Pyramid], gbuffer: GBuffer, scene: Scene, seed: typing.SupportsInt | typing.SupportsIndex) -> GlossyLight:
     """
     Light that the glossy lobe reflects.
@@ -3769,6 +3842,10 @@ def hemisphere_direction(x: typing.SupportsFloat | typing.SupportsIndex, y: typi
 def hemisphere_square(direction: typing.Annotated[collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], 'FixedSize(3)']) -> typing.Annotated[list[float], 'FixedSize(2)']:
     """
     The inverse of hemisphere_direction, of a unit direction.
+    """
+def inject(lights: VirtualLights, domain: Domain) -> LightVolume:
+    """
+    The light that virtual lights send into the cells before them. ValueError for warped or nested grids, and above 4 GiB.
     """
 def interpolate(technique: Evaluated | Gather | Splat, caches: ConvolvedCaches | None, gbuffer: GBuffer, scene: Scene, fill: TracedFill | ConeFill, preconvolve: LobeIntegral | MipChain, pyramids: collections.abc.Sequence[Pyramid], seed: typing.SupportsInt | typing.SupportsIndex=0) -> CacheLight:
     """
@@ -3828,6 +3905,10 @@ def links_from_store(stored: dict[str, typing.Any], sites: CacheSites, surfels: 
     """
     What `to_store` gave; every number is checked, also against what they link.
     """
+def look_up(volume: LightVolume, gbuffer: GBuffer) -> GatheredLight:
+    """
+    What comes to the pixels out of a light volume: irradiance alone.
+    """
 def march(technique: TracedRays | DiffuseCones, pyramids: collections.abc.Sequence[Pyramid], gbuffer: GBuffer, scene: Scene, share: EveryPixel | Interleaved, seed: typing.SupportsInt | typing.SupportsIndex) -> GatheredLight:
     """
     Light that arrives over the hemisphere at the pixels.
@@ -3873,6 +3954,10 @@ def preconvolve(technique: LobeIntegral | MipChain, filled: FilledCaches) -> Con
 def prefilter(technique: VolumeCoverage | SurfaceCoverage | Anisotropic | OctantCoverage | SphericalHarmonicVoxels, lit: LitVoxels) -> Pyramid:
     """
     Radiance and opacity of ever larger voxels.
+    """
+def propagate(technique: LightPropagation, injected: LightVolume, blockers: GeometryVolume | None=None) -> LightVolume:
+    """
+    The light that comes to every cell from others. blockers: None: nothing blocks; ValueError for another grid's.
     """
 def pull(surfels: ClusteredSurfels, radiance: typing.Any, radiosity: bool=False) -> NodeLight:
     """

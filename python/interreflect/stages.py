@@ -282,6 +282,10 @@ def shade_lights(
     return _core.light_pixels(technique, by, _core.EveryPixel() if share is None else share, lights, shadows, gbuffer, scene.core, seed)
 
 
+# Of light volumes: the core's functions take what a user holds.
+inject, geometry_volume, propagate, look_up = _core.inject, _core.geometry_volume, _core.propagate, _core.look_up
+
+
 def place_surfels(technique: Any, scene: Scene) -> _core.Surfels:
     """Disks that stand for the scene's still surface: `.position`, `.normal` (n, 3), `.area` (n,). Bodies have none.
 

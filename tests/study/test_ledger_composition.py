@@ -43,9 +43,11 @@ def placed(halton, relaxed):
     return pd.DataFrame.from_dict(rows, orient="index", columns=["nearest", "deviation", "gaps"])
 
 
-def rivals(ours, cones):
+def rivals(ours, cones, lpv=None):
     names = [*figure_6.ways(), "composition, all bounces"]
     errors = {name: ours if "composition" in name else cones for name in names}
+    if lpv is not None:
+        errors["light propagation, grid of 32"] = lpv
     return pd.DataFrame({"off": errors, "energy": 1.0, "relmse": errors, "milliseconds": 10.0})
 
 
@@ -125,6 +127,7 @@ CASES = [
     ("j2", {figure_3: placed((0.6, 0.2, 0.3), (0.6, 0.2, 0.3))}, 1, IN_PART),
     ("j2", {figure_3: placed((0.4, 0.2, 0.4), (0.4, 0.1, 0.4))}, 1, DOES_NOT_HOLD),
     ("j3", {figure_6: rivals(0.1, 0.3)}, 2, HOLDS),
+    ("j3", {figure_6: rivals(0.1, 0.3, lpv=0.15)}, 2, IN_PART),
     ("j3", {figure_6: rivals(0.2, 0.3)}, 2, DOES_NOT_HOLD),
     ("j4", {figure_7: lamp(0.05, 1.02)}, 1, HOLDS),
     ("j4", {figure_7: lamp(0.05, 0.9)}, 1, IN_PART),

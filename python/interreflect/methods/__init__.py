@@ -10,6 +10,7 @@ _HOMES = {
     "ClusteredRadianceCaching": "clustered_radiance_caching",
     "ConstantAmbient": "constant_ambient",
     "IlluminanceComposition": "illuminance_composition",
+    "LightPropagationVolumes": "light_propagation_volumes",
     "PathTracing": "path_tracing",
     "PathTracingDenoised": "path_tracing_denoised",
     "VirtualAreaLights": "virtual_area_lights",
@@ -32,6 +33,7 @@ if TYPE_CHECKING:
     from interreflect.methods.clustered_radiance_caching import ClusteredRadianceCaching as ClusteredRadianceCaching
     from interreflect.methods.constant_ambient import ConstantAmbient as ConstantAmbient
     from interreflect.methods.illuminance_composition import IlluminanceComposition as IlluminanceComposition
+    from interreflect.methods.light_propagation_volumes import LightPropagationVolumes as LightPropagationVolumes
     from interreflect.methods.path_tracing import PathTracing as PathTracing
     from interreflect.methods.path_tracing_denoised import PathTracingDenoised as PathTracingDenoised
     from interreflect.methods.virtual_area_lights import VirtualAreaLights as VirtualAreaLights

@@ -11,11 +11,10 @@ from interreflect.methods.knobs import knob, stage
 from interreflect.methods.method import Method, method
 from interreflect.methods.pieces import Pieces
 from interreflect.methods.prepared import View
+from interreflect.methods.suns import suns_of
 from interreflect.methods.virtual_light_presets import PRESETS
 from interreflect.profile import Profile
-from interreflect.scenes.median_cut import directional_lights
 from interreflect.scenes.scene import Scene
-from interreflect.scenes.values import DirectionalLight, EnvironmentLight
 from interreflect.stages import (
     bounce_maps,
     cluster_lights,
@@ -106,7 +105,7 @@ class VirtualAreaLights(Method):
         for bounce in range(self.bounces):
             with profile.stage("reflective_shadow_maps") as note:
                 if bounce == 0:
-                    maps = note(light_maps(view.scene, self.map_size, self.emitter_views, self.suns(view)))
+                    maps = note(light_maps(view.scene, self.map_size, self.emitter_views, suns_of(view, self.environment_lights)))
                 else:
                     maps = note(bounce_maps(view.scene, made[-1], self.map_size))
             with profile.stage("sample_lights") as note:
@@ -117,16 +116,3 @@ class VirtualAreaLights(Method):
                     lights = note(cluster_lights(self.cluster_lights, lights, maps, before, view.seed))
             made.append(lights)
         return tuple(made)
-
-    def suns(self, view: View) -> tuple[DirectionalLight, ...]:
-        """Lights that stand for the scene's environment, kept while it stays the same."""
-        environment = next((light for light in view.scene.lights if isinstance(light, EnvironmentLight)), None)
-        if environment is None:
-            return ()
-        up = tuple(view.scene.up)
-        key = (environment.hash, up, self.environment_lights)
-        if view.state.get("suns_of") != key:
-            view.state["suns"] = directional_lights(environment, self.environment_lights, hemisphere=False, up=up)
-            view.state["suns_of"] = key
-        suns: tuple[DirectionalLight, ...] = view.state["suns"]
-        return suns
