@@ -24,7 +24,7 @@ struct PictureView {
     int size = view.size;
     float texel = 4.0f * view.half_x * view.half_y / (static_cast<float>(size) * static_cast<float>(size));
 
-    Ray ray(float x, float y) const { return view.ray(x, y); }
+    void rays(int x0, int y0, RayPacket& packet) const { view.rays(x0, y0, packet); }
     /// Along a texel's ray, by the cube of its cosine: of the plane at distance 1.
     float solid_angle(const vec3& direction) const {
         const float cosine = parallel() ? 1.0f : glm::dot(direction, view.forward);
@@ -36,6 +36,13 @@ struct PictureView {
     }
 };
 
+/// Rays through the centres of 4 x 4 texels, one by one.
+template <class View>
+void rays_of(const View& view, int x0, int y0, RayPacket& packet) {
+    for (int lane = 0; lane < RayPacket::width; ++lane)
+        packet.set(lane, view.ray(static_cast<float>(x0 + lane % 4) + 0.5f, static_cast<float>(y0 + lane / 4) + 0.5f));
+}
+
 /// All around a point or spot light: texels of equal solid angle.
 struct SphereView {
     vec3 origin;
@@ -46,6 +53,7 @@ struct SphereView {
     Ray ray(float x, float y) const {
         return {origin, 0.0f, uniform_sphere({x / static_cast<float>(size), y / static_cast<float>(size)})};
     }
+    void rays(int x0, int y0, RayPacket& packet) const { rays_of(*this, x0, y0, packet); }
     float solid_angle(const vec3&) const { return 4.0f * pi / (static_cast<float>(size) * static_cast<float>(size)); }
     bool parallel() const { return false; }
     vec3 incident(float measure, const vec3& direction) const { return lights->intensity(light, direction) * measure; }
@@ -60,6 +68,7 @@ struct HemisphereView {
     vec3 local(float x, float y) const { return cosine_hemisphere({x / static_cast<float>(size), y / static_cast<float>(size)}); }
     float texels() const { return static_cast<float>(size) * static_cast<float>(size); }
     Ray ray(float x, float y) const { return {disk.position + disk.normal * disk.offset, 0.0f, frame.to_world(local(x, y))}; }
+    void rays(int x0, int y0, RayPacket& packet) const { rays_of(*this, x0, y0, packet); }
     float solid_angle(const vec3& direction) const {
         return pi / (texels() * glm::max(glm::dot(direction, disk.normal), least_cosine));
     }
@@ -105,11 +114,9 @@ class MapTracer {
 
     void start(Packet& packet, const Tile& tile, int x0, int y0) const {
         packet.x0 = x0, packet.y0 = y0, packet.active = 0;
-        for (int lane = 0; lane < RayPacket::width; ++lane) {
-            const int x = x0 + lane % side, y = y0 + lane / side;
-            packet.rays.set(lane, view_.ray(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f));
-            packet.active |= static_cast<std::uint32_t>(x < tile.x1 && y < tile.y1) << lane;
-        }
+        view_.rays(x0, y0, packet.rays);
+        for (int lane = 0; lane < RayPacket::width; ++lane)
+            packet.active |= static_cast<std::uint32_t>(x0 + lane % side < tile.x1 && y0 + lane / side < tile.y1) << lane;
         intersector_.nearest(packet.rays, packet.active);
         prefetch_hits(kernel_, packet.rays);
     }

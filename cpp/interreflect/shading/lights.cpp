@@ -11,15 +11,8 @@ LightSampler::Delta towards(const vec3& light, const vec3& intensity, const vec3
     const vec3 to = light - position;
     const float distance = glm::length(to);
     if (!(distance > 0.0f)) return {};
-    return {to / distance, distance, intensity / distance / distance};
-}
-
-/// Smoothstep of the cosine between the inner and the outer half angle.
-float spot_falloff(float inner, float outer, float cosine) {
-    if (cosine >= inner) return 1.0f;
-    if (cosine <= outer) return 0.0f;
-    const float t = (cosine - outer) / (inner - outer);
-    return t * t * (3.0f - 2.0f * t);
+    const float inverse = 1.0f / distance;  // its square may overflow where intensity / distance^2 does not
+    return {to * inverse, distance, intensity * inverse * inverse};
 }
 
 }  // namespace
@@ -35,20 +28,13 @@ LightSampler::LightSampler(const Scene& scene)
         cones_.push_back({std::cos(light.inner * degrees_to_radians), std::cos(light.outer * degrees_to_radians)});
 }
 
-vec3 LightSampler::intensity(int i, const vec3& direction) const {
-    if (i < points_) return scene_->point_lights[i].intensity;
-    const SpotLight& light = scene_->spot_lights[i - points_];
-    const Cone& cone = cones_[i - points_];
-    return light.intensity * spot_falloff(cone.inner, cone.outer, glm::dot(direction, light.direction));
-}
-
 LightSampler::Delta LightSampler::delta(int i, const vec3& position) const {
     if (i < points_) return towards(scene_->point_lights[i].position, scene_->point_lights[i].intensity, position);
     if (i < points_ + spots_) {
         const SpotLight& light = scene_->spot_lights[i - points_];
         const Cone& cone = cones_[i - points_];
         Delta delta = towards(light.position, light.intensity, position);
-        delta.irradiance *= spot_falloff(cone.inner, cone.outer, -glm::dot(delta.direction, light.direction));
+        delta.irradiance *= cone.falloff(-glm::dot(delta.direction, light.direction));
         return delta;
     }
     const DirectionalLight& light = scene_->directional_lights[i - points_ - spots_];

@@ -35,7 +35,11 @@ class LightSampler {
     int delta_count() const { return points_ + spots_ + directions_; }
     Delta delta(int i, const vec3& position) const;
     /// Of a point or spot light along `direction` (unit, away from the light), W/sr.
-    vec3 intensity(int i, const vec3& direction) const;
+    vec3 intensity(int i, const vec3& direction) const {
+        if (i < points_) return scene_->point_lights[i].intensity;
+        const SpotLight& light = scene_->spot_lights[i - points_];
+        return light.intensity * cones_[i - points_].falloff(glm::dot(direction, light.direction));
+    }
     /// Light that is the same at every position.
     bool delta_is_directional(int i) const { return i >= points_ + spots_; }
 
@@ -67,6 +71,14 @@ class LightSampler {
     /// Cosines of a spot's half angles.
     struct Cone {
         float inner, outer;
+
+        /// Smoothstep between them.
+        float falloff(float cosine) const {
+            if (cosine >= inner) return 1.0f;
+            if (cosine <= outer) return 0.0f;
+            const float t = (cosine - outer) / (inner - outer);
+            return t * t * (3.0f - 2.0f * t);
+        }
     };
 
     const Scene* scene_;

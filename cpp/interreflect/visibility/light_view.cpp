@@ -40,6 +40,34 @@ float LightView::texel_measure(float x, float y) const {
     return area / (squared * std::sqrt(squared));
 }
 
+void LightView::rays(int x0, int y0, RayPacket& packet) const {
+    // Plain loops over lanes, for the compiler to make vectors of; the order of operations is that of `ray`.
+    constexpr int lanes = RayPacket::width;
+    alignas(64) RayPacket::Lanes column, row, inverse_length;
+    RayPacket::Lanes* const origins[3] = {&packet.origin_x, &packet.origin_y, &packet.origin_z};
+    RayPacket::Lanes* const directions[3] = {&packet.direction_x, &packet.direction_y, &packet.direction_z};
+    const float width = static_cast<float>(size);
+    for (int i = 0; i < lanes; ++i) {
+        column[i] = half_x * (2.0f * (static_cast<float>(x0 + i % 4) + 0.5f) / width - 1.0f);
+        row[i] = half_y * (2.0f * (static_cast<float>(y0 + i / 4) + 0.5f) / width - 1.0f);
+        packet.near[i] = 0.0f;
+        packet.far[i] = std::numeric_limits<float>::infinity();
+    }
+    const vec3& from = perspective ? forward : origin;
+    const vec3& constant = perspective ? origin : forward;
+    for (int k = 0; k < 3; ++k) {
+        auto& moved = *(perspective ? directions : origins)[k];
+        auto& same = *(perspective ? origins : directions)[k];
+        for (int i = 0; i < lanes; ++i) moved[i] = from[k] + (right[k] * column[i] + down[k] * row[i]), same[i] = constant[k];
+    }
+    if (!perspective) return;
+    const auto& [x, y, z] = directions;
+    for (int i = 0; i < lanes; ++i)
+        inverse_length[i] = 1.0f / std::sqrt((*x)[i] * (*x)[i] + (*y)[i] * (*y)[i] + (*z)[i] * (*z)[i]);
+    for (auto* direction : directions)
+        for (int i = 0; i < lanes; ++i) (*direction)[i] *= inverse_length[i];
+}
+
 LightView view_of(const DirectionalLight& light, const Bounds& bounds, int size) {
     LightView view;
     view.perspective = false;

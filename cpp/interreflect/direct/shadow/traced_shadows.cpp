@@ -73,29 +73,28 @@ vec3 reflected_light(const PixelSurface& surface, const LightSampler::Delta& del
     return f * delta.irradiance * glm::dot(surface.point.normal, delta.direction);
 }
 
-void trace_positional_light(int number, const Tile& tile, ShadowPackets& packets, const Scene& scene, const LightSampler& lights,
-                            const GBuffer& g) {
-    for_each_hit(g, tile, [&](std::size_t pixel) {
-        const LightSampler::Delta delta = lights.delta(number, g.position[pixel]);
-        if (glm::dot(g.normal[pixel], delta.direction) <= 0.0f || max_component(delta.irradiance) <= 0.0f) return;
-        const PixelSurface surface(g, scene, pixel);
-        const vec3 reflected = reflected_light(surface, delta);
-        if (max_component(reflected) > 0.0f) packets.add(surface.shadow_ray(delta.direction, delta.distance), reflected, pixel);
-    });
+/// It ends short of the surface of a light that lies there.
+Ray shadow_ray(const GBuffer& g, std::size_t pixel, const LightSampler::Delta& light) {
+    const float offset = g.offset[pixel];
+    return {g.position[pixel] + g.geometric_normal[pixel] * offset, 0.0f, light.direction,
+            light.distance * (1.0f - 0x1p-14f) - 2.0f * offset};
 }
 
-/// A directional light is the same at every pixel, and most surfaces are diffuse: what faces away costs a look at two normals.
-void trace_directional_light(const LightSampler::Delta& sun, const Tile& tile, ShadowPackets& packets, const Scene& scene,
-                             const GBuffer& g) {
+/// `light_at`: the light as seen from a position. Most surfaces are diffuse: what faces away costs a look at two normals.
+template <class LightAt>
+void trace_delta_light(const LightAt& light_at, const Tile& tile, ShadowPackets& packets, const Scene& scene, const GBuffer& g) {
     for_each_pixel(tile, g.width, [&](std::size_t pixel) {
-        const float cosine = glm::dot(g.normal[pixel], sun.direction);  // 0 where nothing was hit
-        if (cosine <= 0.0f || glm::dot(g.geometric_normal[pixel], sun.direction) <= 0.0f) return;
+        const vec3 position = g.position[pixel], normal = g.normal[pixel];
+        const LightSampler::Delta& light = light_at(position);
+        const float cosine = glm::dot(normal, light.direction);  // 0 where nothing was hit
+        if (!(cosine > 0.0f) || glm::dot(g.geometric_normal[pixel], light.direction) <= 0.0f) return;
+        if (max_component(light.irradiance) <= 0.0f) return;
         const bool glossy = max_component(g.specular[pixel]) > 0.0f;
-        const vec3 reflected = glossy ? reflected_light(PixelSurface(g, scene, pixel), sun)
-                                      : g.albedo[pixel] * sun.irradiance * (cosine * (1.0f / pi));
+        if (!glossy && !g.seen_head_on && glm::dot(normal, g.camera.position - position) <= 0.0f) return;
+        const vec3 reflected = glossy ? reflected_light(PixelSurface(g, scene, pixel), light)
+                                      : g.albedo[pixel] * light.irradiance * (cosine * (1.0f / pi));
         if (!(max_component(reflected) > 0.0f)) return;
-        const vec3 origin = g.position[pixel] + g.geometric_normal[pixel] * g.offset[pixel];
-        packets.add({origin, 0.0f, sun.direction}, reflected, pixel);
+        packets.add(shadow_ray(g, pixel, light), reflected, pixel);
     });
 }
 
@@ -174,10 +173,12 @@ DirectLight shadow(const TracedShadows& technique, const Scene& scene, const Int
         }
         for (int i = 0; i < lights.delta_count(); ++i) {
             ShadowPackets packets(result, intersector);
-            if (i < positional)
-                trace_positional_light(i, tile, packets, scene, lights, g);
-            else
-                trace_directional_light(lights.delta(i, vec3(0)), tile, packets, scene, g);
+            if (i < positional) {
+                trace_delta_light([&](const vec3& position) { return lights.delta(i, position); }, tile, packets, scene, g);
+            } else {
+                const LightSampler::Delta sun = lights.delta(i, vec3(0));
+                trace_delta_light([&sun](const vec3&) -> const LightSampler::Delta& { return sun; }, tile, packets, scene, g);
+            }
             packets.flush();
             counts[tile.index].shadow_rays += packets.rays();
         }
