@@ -28,7 +28,7 @@ def test_the_file_that_defines_a_method_matters():
 
 def test_what_only_draws_or_reads_does_not_matter():
     names = {path.relative_to(sources.PACKAGE).as_posix() for path in sources._package_files()}
-    assert {"methods/method.py", "methods/path_tracing.py", "stages.py", "scenes/compile.py"} <= names
+    assert {"methods/method.py", "methods/path_tracing.py", "stages/view.py", "scenes/compile.py"} <= names
     assert not names & {"charts/records.py", "cli.py", "study/report.py", "scenes/builtin/cornell_box.py"}
 
 
