@@ -20,6 +20,7 @@ from interreflect.methods.knobs import knob
 from interreflect.methods.method import method
 from interreflect.methods.prepared import View
 from interreflect.profile import Profile
+from interreflect.spacing import HEXAGONAL, surfel_spacing
 from interreflect.stages import trace_gbuffer
 
 MILLIONTHS = 1e6
@@ -94,8 +95,7 @@ class CompositionPicture(MeasuredComposition):
 def _surfels(state: dict[str, Any], gbuffer: _core.GBuffer, seen: NDArray[np.bool_], counts: Any) -> NDArray[np.float32]:
     surfels = state["surfels"].surfels
     tree = cKDTree(surfels.position)
-    spacing = _nearest_on_side(tree, surfels) / np.sqrt(2 * surfels.area / np.sqrt(3))
-    spacing = spacing[np.isfinite(spacing)]
+    spacing = surfel_spacing(surfels).distance / HEXAGONAL
     distance, nearest = tree.query(gbuffer.position[seen])
     radius = np.sqrt(surfels.area[nearest] / np.pi)
     gaps = distance > radius
@@ -107,13 +107,6 @@ def _surfels(state: dict[str, Any], gbuffer: _core.GBuffer, seen: NDArray[np.boo
     colours[distance > EDGE * radius] *= np.float32(0.4)
     colours[gaps] = 0
     return colours
-
-
-def _nearest_on_side(tree: cKDTree, surfels: _core.Surfels) -> NDArray[np.float64]:
-    """(n,): distance to the nearest of seven neighbours that faces the same way, for sides of thin walls are apart; infinite: none."""
-    distance, number = tree.query(surfels.position, k=8)
-    same = np.einsum("nkc,nc->nk", surfels.normal[number], surfels.normal) > 0.5
-    return np.asarray(np.where(same, distance, np.inf)[:, 1:].min(1))
 
 
 def _caches(state: dict[str, Any], gbuffer: _core.GBuffer, seen: NDArray[np.bool_], _counts: Any) -> NDArray[np.float32]:

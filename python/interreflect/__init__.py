@@ -27,6 +27,7 @@ _HOMES = {
     **dict.fromkeys(("light_maps", "sample_lights", "cluster_lights", "shadow_lights", "shade_lights"), "stages"),
     **dict.fromkeys(("techniques", "exact"), "stages"),
     **dict.fromkeys(("VoxelCoverage", "voxel_coverage"), "coverage"),
+    **dict.fromkeys(("SurfelSpacing", "surfel_spacing"), "spacing"),
     "voxel_view": "cubes",
     "cluster_view": "clusters",
     "light_cluster_view": "clusters",
@@ -104,6 +105,8 @@ if TYPE_CHECKING:
     from interreflect.scenes.values import Scene as Scene
     from interreflect.scenes.values import SpotLight as SpotLight
     from interreflect.scenes.values import Texture as Texture
+    from interreflect.spacing import SurfelSpacing as SurfelSpacing
+    from interreflect.spacing import surfel_spacing as surfel_spacing
     from interreflect.stages import cluster_lights as cluster_lights
     from interreflect.stages import distribute as distribute
     from interreflect.stages import exact as exact

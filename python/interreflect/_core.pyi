@@ -3823,6 +3823,11 @@ def evaluate(technique: DirectLinks, links: CacheLinks, light: NodeLight, sites:
     """
     What pixels get from the links of caches.
     """
+@typing.overload
+def evaluate(technique: DirectLinks, links: AllSurfels, sites: CacheSites, surfels: ClusteredSurfels, light: NodeLight, gbuffer: GBuffer, scene: Scene, seed: typing.SupportsInt | typing.SupportsIndex=0) -> SurfelLight:
+    """
+    What pixels get from surfels themselves, as the caches that they read see them.
+    """
 def fill(technique: TracedFill | ConeFill, places: CachePlaces, pyramids: collections.abc.Sequence[Pyramid], scene: Scene, seed: typing.SupportsInt | typing.SupportsIndex=0) -> FilledCaches:
     """
     The radiance that arrives at every cache.
@@ -3975,9 +3980,9 @@ def reflective_shadow_map(scene: Scene, light: typing.SupportsInt | typing.Suppo
     """
     What a spot or directional light sees; `light` counts point, then spot, then directional lights.
     """
-def sample_caches(technique: AllSurfels, sites: CacheSites, surfels: ClusteredSurfels, light: NodeLight, chrominance_bands: typing.SupportsInt | typing.SupportsIndex, scene: Scene, seed: typing.SupportsInt | typing.SupportsIndex=0) -> LightCaches:
+def sample_caches(technique: AllSurfels, sites: CacheSites, surfels: ClusteredSurfels, light: NodeLight, chrominance_bands: typing.SupportsInt | typing.SupportsIndex, scene: Scene, seed: typing.SupportsInt | typing.SupportsIndex=0, used: typing.Any | None=None) -> LightCaches:
     """
-    Rays from every cache to surfels themselves.
+    Rays from every cache to surfels themselves. used: as `light_caches` takes it.
     """
 def sample_lights(technique: EveryRsmPixel | HaltonLights, maps: LightMaps, seed: typing.SupportsInt | typing.SupportsIndex=0) -> VirtualLights:
     """
@@ -4033,6 +4038,10 @@ def still_triangles(scene: Scene) -> tuple[numpy.typing.NDArray[numpy.float32], 
 def surfel_pixels(surfels: ClusteredSurfels, scene: Scene) -> GBuffer:
     """
     Surfels as the pixels of a picture, row by row.
+    """
+def surfel_spacing(surfels: Surfels) -> numpy.typing.NDArray[numpy.float32]:
+    """
+    (n,): distance of each to the nearest other one on its side, over the root of its area; infinite where there is none.
     """
 def surfels_from_store(stored: dict[str, typing.Any], scene: Scene) -> ClusteredSurfels:
     """

@@ -50,9 +50,14 @@ def chosen(links, light=None):
     return _core.choose_links(technique, candidates(), tree(), light or stages.pull(tree(), radiance()))
 
 
+def values(caches):
+    """Coefficients, which are multiples of every cache's unit."""
+    return np.asarray(caches.coefficients, np.float64) * np.asarray(caches.unit)[:, None]
+
+
 def lit(links, light=None):
     light = light or stages.pull(tree(), radiance())
-    return np.asarray(stages.light_caches(ir.RuntimeProjection(), links, sites(), tree(), light, spot()).coefficients)
+    return values(stages.light_caches(ir.RuntimeProjection(), links, sites(), tree(), light, spot()))
 
 
 def by_solid_angle(links):
@@ -60,9 +65,7 @@ def by_solid_angle(links):
 
 
 def error(coefficients):
-    exact = np.asarray(
-        stages.light_caches(ir.AllSurfels(samples=0), None, sites(), tree(), stages.pull(tree(), radiance()), spot()).coefficients
-    )
+    exact = values(stages.light_caches(ir.AllSurfels(samples=0), None, sites(), tree(), stages.pull(tree(), radiance()), spot()))
     return float(np.linalg.norm(coefficients - exact) / np.linalg.norm(exact))
 
 

@@ -248,9 +248,7 @@ def test_light_does_not_come_through_a_sheet_with_two_sides():
 @pytest.mark.parametrize(("changes", "error", "message"), [
     ({"evaluate": ir.SphericalHarmonicLobes(chrominance_bands=5)}, ValueError, "the bands of the links"),
     ({"sky": ir.ConeSky()}, ValueError, "ConeSky needs cones"),
-    ({"evaluate": ir.DirectLinks(), "link": ir.AllSurfels()}, ValueError, "AllSurfels stores none"),
-    ({"lit_caches": "read", "bounces": None}, ValueError, "needs links that are stored, and a number of bounces"),
-    ({"lit_caches": "read", "link": ir.AllSurfels()}, ValueError, "needs links that are stored, and a number of bounces"),
+    ({"lit_caches": "read", "bounces": None}, ValueError, "needs a number of bounces"),
     ({"emitters": "cones"}, ValueError, "emitters must be one of rays, links"),
     ({"link": ir.ShLinks(bands=4), "evaluate": ir.SphericalHarmonicLobes(chrominance_bands=6)}, ValueError, "the bands of the links"),
     ({"shadow": ir.VoxelCones()}, ValueError, "VoxelCones needs voxels"),

@@ -106,8 +106,9 @@ def test_every_stage_knows_how_exact_it_is():
     assert counterpart_of("march", ir.DiffuseCones(), 32) == (REPLACED, ir.TracedRays(samples=32))
     assert counterpart_of("shadow", ir.TracedShadows(samples=4), 32) == (MORE_SAMPLES, ir.TracedShadows(samples=32))
     assert counterpart_of("shadow", ir.TracedShadows(samples=64), 32) == (EXACT, None)
-    assert counterpart_of("fill", ir.ConeFill(resolution=4), 32) == (REPLACED, ir.TracedFill(samples=1))  # 256 rays a map
+    assert counterpart_of("fill", ir.ConeFill(resolution=4), 32) == (REPLACED, ir.TracedFill(resolution=4, samples=2))
     assert counterpart_of("fill", ir.TracedFill(resolution=4, samples=1), 32) == (MORE_SAMPLES, ir.TracedFill(resolution=4, samples=2))
+    assert counterpart_of("link", ir.ShLinks(bands=7, near_rays=0), 32) == (REPLACED, ir.AllSurfels(bands=7, samples=32))
     assert counterpart_of("share", ir.EveryPixel(), 32) == (EXACT, None)
     assert counterpart_of("glossy", None, 32) == (LEFT_OUT, ir.TracedRays(samples=32))
     assert counterpart_of("prefilter", ir.SurfaceCoverage(), 32) == (NO_COUNTERPART, None)
@@ -163,6 +164,19 @@ def test_denoised_path_tracing_is_charged_with_its_noise_and_the_denoisers_bias(
     # Without both it is unbiased path tracing, which has nothing but noise.
     assert found.rest == pytest.approx(0, abs=0.05)
     assert sum(share.error for share in shares.values()) + found.rest + found.interaction == pytest.approx(1)
+
+
+def test_illuminance_composition_is_charged_with_its_caches_links_and_bands(box):
+    method = ir.methods.IlluminanceComposition(
+        place_surfels=ir.HaltonSurfels(surfels=1000), place_caches=ir.CacheGrid(nx=4, ny=4, nz=4), link=ir.ShLinks(links=16, bands=2)
+    )
+    found = {stage.stage: stage for stage in box(method, 256).stages}
+    counterparts = {name: found[name].counterpart.partition("(")[0] for name in ("place_caches", "link", "evaluate")}
+    assert counterparts == {"place_caches": "PixelCaches", "link": "AllSurfels", "evaluate": "DirectLinks"}
+    assert all(found[name].status == REPLACED for name in counterparts)
+    assert found["place_surfels"].status == found["cluster_surfels"].status == NO_COUNTERPART
+    # Sixteen caches a wall, two bands and sixteen links: each is far from enough.
+    assert found["place_caches"].error > 0.2 and found["link"].error + found["evaluate"].error > 0.1
 
 
 def test_what_sharing_is_charged_with_does_not_depend_on_the_counterparts_rays(box):

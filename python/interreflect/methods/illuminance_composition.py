@@ -98,10 +98,8 @@ class IlluminanceComposition(Method):
             raise ValueError("IlluminanceComposition.sky: ConeSky needs cones, and surfels have none")
         if isinstance(self.shadow, _core.VoxelCones):
             raise ValueError("IlluminanceComposition.shadow: VoxelCones needs voxels, and surfels have none")
-        if self.lit_caches == "read" and (self.bounces is None or isinstance(self.link, _core.AllSurfels)):
-            raise ValueError("IlluminanceComposition.lit_caches: 'read' needs links that are stored, and a number of bounces")
-        if isinstance(self.evaluate, _core.DirectLinks) and isinstance(self.link, _core.AllSurfels):
-            raise ValueError("IlluminanceComposition.evaluate: DirectLinks needs links, and AllSurfels stores none")
+        if self.lit_caches == "read" and self.bounces is None:
+            raise ValueError("IlluminanceComposition.lit_caches: 'read' needs a number of bounces")
         if self.chrominance_bands > self.link.bands:
             raise ValueError(
                 f"IlluminanceComposition.evaluate.chrominance_bands must lie in [0, {self.link.bands}], the bands of the links, "
@@ -154,7 +152,7 @@ class IlluminanceComposition(Method):
         maps = self.shadow_maps(view, profile)
         arrived, kept = self.light(view, at_pixels, at_surfels, emitted, maps, profile)
         with profile.stage("evaluate") as note:
-            light = note(self.gathered(arrived, at_pixels, gbuffer, scene))
+            light = note(self.gathered(arrived, at_pixels, gbuffer, view))
         with profile.stage("shadow") as note:
             direct_light = note(self.direct(view, gbuffer, maps))
         with profile.stage("sky") as note:
@@ -164,7 +162,7 @@ class IlluminanceComposition(Method):
             direct = gbuffer.emission + direct_light.radiance + environment.radiance
         if emitted is not None:
             with profile.stage("evaluate_emitters") as note:
-                light = note(self.gathered(emitted[0], at_pixels, gbuffer, scene))
+                light = note(self.gathered(emitted[0], at_pixels, gbuffer, view))
                 direct = direct + shade(gbuffer, light.gathered, light.glossy)
         return direct, indirect, kept
 
@@ -262,8 +260,10 @@ class IlluminanceComposition(Method):
             )  # fmt: skip
         return CacheLight(caches, patches, links)
 
-    def gathered(self, light: CacheLight, caches: Caches, gbuffer: _core.GBuffer, scene: Scene) -> _core.SurfelLight:
-        return evaluate(self.evaluate, light.caches, caches.sites, gbuffer, scene, light.links, light.patches)
+    def gathered(self, light: CacheLight, caches: Caches, gbuffer: _core.GBuffer, view: View) -> _core.SurfelLight:
+        links = self.link if isinstance(self.link, _core.AllSurfels) else light.links
+        surfels = view.state["surfels"]
+        return evaluate(self.evaluate, light.caches, caches.sites, gbuffer, view.scene, links, light.patches, surfels, view.seed)
 
     def light_surfels(self, view: View, maps: _core.ShadowMaps | None, note: Any) -> NDArray[np.float32]:
         """(rows, columns, 3): radiance that surfels reflect of the lights', and by rays of the emitters'."""
@@ -277,7 +277,7 @@ class IlluminanceComposition(Method):
     def reflected(self, view: View, last: CacheLight, at_surfels: Caches, note: Any) -> NDArray[np.float32]:
         """(rows, columns, 3): radiance that surfels reflect of the caches'."""
         pixels = view.state["pixels"]
-        return shade(pixels, note(self.gathered(last, at_surfels, pixels, view.scene)).gathered)
+        return shade(pixels, note(self.gathered(last, at_surfels, pixels, view)).gathered)
 
 
 def converged(before: NDArray[np.float32], after: NDArray[np.float32]) -> bool:

@@ -78,7 +78,7 @@ def light_caches(
 
     window: none, hanning or lanczos, over the bands. used: caches that anything reads (`used_caches`); the others may stay black."""
     if links is None:
-        made = _core.sample_caches(technique, sites, surfels, light, chrominance_bands, scene.core, seed)
+        made = _core.sample_caches(technique, sites, surfels, light, chrominance_bands, scene.core, seed, used)
     else:
         made = _core.light_caches(links, light, technique.bands, chrominance_bands, used)
     _core.window_caches(made, window)
@@ -91,14 +91,18 @@ def evaluate(
     sites: _core.CacheSites,
     gbuffer: _core.GBuffer,
     scene: Scene,
-    links: _core.CacheLinks | None = None,
+    links: _core.CacheLinks | _core.AllSurfels | None = None,
     light: _core.NodeLight | None = None,
+    surfels: _core.ClusteredSurfels | None = None,
+    seed: int = 0,
 ) -> _core.SurfelLight:
     """What pixels get from caches: `.gathered.irradiance` and `.glossy.radiance`. DirectLinks takes, in place of the caches' light, the
-    links and what comes through them."""
+    links and what comes through them; of AllSurfels the surfels."""
     if isinstance(technique, _core.DirectLinks):
-        if links is None or light is None:
-            raise ValueError("DirectLinks needs links that are stored, and what comes through them: evaluate(..., links=..., light=...)")
+        if light is not None and surfels is not None and isinstance(links, _core.AllSurfels):
+            return _core.evaluate(technique, links, sites, surfels, light, gbuffer, scene.core, seed)
+        if light is None or not isinstance(links, _core.CacheLinks):
+            raise ValueError("DirectLinks needs links, or AllSurfels and surfels, and what they send: evaluate(..., links=..., light=...)")
         return _core.evaluate(technique, links, light, sites, gbuffer, scene.core)
     if caches is None:
         raise ValueError(f"{type(technique).__name__} needs the caches' light")

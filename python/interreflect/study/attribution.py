@@ -183,9 +183,15 @@ def counterpart_of(stage: str, technique: Any, samples: int) -> tuple[str, Any]:
     if technique is None:
         return LEFT_OUT, _with_samples(exact(), samples)
     if not isinstance(technique, exact):
-        return REPLACED, _with_samples(exact(), samples)
+        return REPLACED, _with_samples(exact(**_kept(technique, exact)), samples)
     more = _with_samples(technique, samples)
     return (MORE_SAMPLES, more) if getattr(more, "samples", 0) > getattr(technique, "samples", 0) else (EXACT, None)
+
+
+def _kept(technique: Any, exact: Any) -> dict[str, Any]:
+    """Knobs of both that say what the stage makes, not how well: the later stages' share is what comes of them."""
+    names = {param["name"] for param in exact.description["params"]}
+    return {name: getattr(technique, name) for name in ("bands", "resolution", "both_sides") if name in names and hasattr(technique, name)}
 
 
 def _share(method: Method, stage: str, samples: int) -> int:

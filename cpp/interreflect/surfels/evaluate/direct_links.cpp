@@ -4,12 +4,11 @@
 #include <stdexcept>
 #include <vector>
 
-#include "direct/pixel_surface.h"
 #include "math/half.h"
 #include "math/octahedral_map.h"
 #include "math/parallel.h"
 #include "math/spherical_harmonics.h"
-#include "shading/brdf.h"
+#include "surfels/evaluate/beam.h"
 #include "surfels/evaluate/cache_finder.h"
 #include "surfels/light_caches.h"
 
@@ -17,11 +16,6 @@ namespace interreflect {
 namespace {
 
 constexpr int tile_size = 16;  // pixels
-
-/// What a link brings: radiance times solid angle, from one direction.
-struct Beam {
-    vec3 direction{0}, light{0};
-};
 
 Beam beam_of(const ConeLink& link, const CacheLinks& links, const NodeLight& light) {
     const float scale = from_half(link.factor) * zonal_cone(0, from_half(link.one_less_cos)) * links.unit;
@@ -44,21 +38,6 @@ void check(const CacheLinks& links, const NodeLight& light, const CacheSites& si
     if (links.kind == CacheLinks::Kind::projected && links.bands < 2)
         throw std::invalid_argument("DirectLinks: links of one band do not tell their direction");
 }
-
-/// Sums of a pixel's irradiance and of what its lobe reflects.
-struct Reflected {
-    vec3 irradiance{0}, glossy{0};
-
-    void add(const PixelSurface& surface, const Beam& beam, float weight) {
-        const float cosine = glm::dot(surface.point.normal, beam.direction);
-        if (!(cosine > 0.0f)) return;
-        irradiance += beam.light * (weight * cosine);
-        if (!surface.glossy()) return;
-        SurfacePoint lobe = surface.point;
-        lobe.albedo = vec3(0);
-        glossy += evaluate_brdf(lobe, surface.to_viewer, beam.direction) * beam.light * (weight * cosine);
-    }
-};
 
 }  // namespace
 

@@ -5,6 +5,7 @@
 #include "data/surfels.h"
 #include "data/technique.h"
 #include "surfels/evaluate/surfel_light.h"
+#include "surfels/link/all_surfels.h"
 
 namespace interreflect {
 
@@ -19,5 +20,10 @@ struct DirectLinks {
 /// std::invalid_argument where links and light do not belong together, or where projected links have one band.
 SurfelLight evaluate(const DirectLinks& technique, const CacheLinks& links, const NodeLight& light, const CacheSites& sites,
                      const GBuffer& gbuffer, const Scene& scene);
+/// Over surfels themselves, in place of links: each cache that a pixel reads sends rays to them, as `light_caches` does of
+/// AllSurfels.
+SurfelLight evaluate(const DirectLinks& technique, const AllSurfels& links, const CacheSites& sites,
+                     const ClusteredSurfels& surfels, const NodeLight& light, const GBuffer& gbuffer, const Scene& scene,
+                     const Intersector& intersector, std::uint32_t seed);
 
 }  // namespace interreflect

@@ -27,8 +27,9 @@ struct AllSurfels {
                        Unit::samples, between(0, 65536)});
 };
 
+/// used: as for links; empty: all.
 LightCaches light_caches(const AllSurfels& technique, const CacheSites& sites, const ClusteredSurfels& surfels,
                          const NodeLight& light, const CacheFormat& format, const Scene& scene, const Intersector& intersector,
-                         std::uint32_t seed);
+                         std::uint32_t seed, std::span<const std::uint8_t> used = {});
 
 }  // namespace interreflect
