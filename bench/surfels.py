@@ -74,7 +74,7 @@ def rows(calibration: Calibration, setting: Setting, scene: ir.Scene) -> list[Ro
     )  # fmt: skip
     lighting, pulling, projected, by_cones, evaluated = times
     name = setting.name
-    evaluations = stages.evaluate(way.evaluate, caches, sites, gbuffer, scene).counts.cache_evaluations
+    evaluations = stages.evaluate(way.evaluate, caches, sites, gbuffer, scene).counts.asdict()["cache_evaluations"]
     told = f"{len(surfels)} surfels, {len(sites)} caches"
     links_limit = lambda c: limits.move(c, links.bytes)  # noqa: E731
     limit_of = {

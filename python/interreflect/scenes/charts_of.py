@@ -13,10 +13,15 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-PADDING = 2  # texels between charts: each may be dilated by one
+# Texels between those that look-ups in charts read, which xatlas keeps apart by itself, but for ends of charts thinner than a texel.
+PADDING = 1
 LEAST_TEXELS = 4.0  # of a chart
-TRIES = 8  # of scales, by bisection
-CHART_TEXELS = 4096.0  # along the scene's longest side, while charts are cut
+TRIES = 9  # of scales, by bisection
+# Along the scene's longest side, while charts are cut: xatlas stretches each to whole texels (1 % on Sponza), and packs them in vain.
+CHART_TEXELS = 1024.0
+# xatlas takes as long for a chart as the square of its triangles: pieces of more than so many get charts of about so few.
+DENSE_TRIANGLES, CHART_TRIANGLES = 2048, 512
+MOST_SEARCHED = 512  # texels on a side up to which charts are tried in every place, which fills a map by a tenth more
 _atlases: list[Any] = []
 
 
@@ -60,18 +65,41 @@ def pack(corners: NDArray[np.float32], area: NDArray[np.float32], texels: int) -
 
 def cut(corners: NDArray[np.float32]) -> tuple[NDArray[np.float32], NDArray[np.uint32]]:
     """Charts of triangles (n, 3, 3): texture coordinates (m, 2) in units of the surface's length, and the triangles' corners (n, 3)."""
-    import xatlas
-
     # The same charts whatever the scene's place and unit: xatlas knows lengths below which it welds.
     low, extent = corners.reshape(-1, 3).min(0), float(np.ptp(corners.reshape(-1, 3), axis=0).max())
     positions, vertex = np.unique((corners.reshape(-1, 3) - low) / np.float32(extent), axis=0, return_inverse=True)
+    triangles = vertex.reshape(-1, 3).astype(np.uint32)
+    piece = pieces_of(triangles)
+    dense = np.flatnonzero(np.bincount(piece) > DENSE_TRIANGLES)
+    groups = [np.flatnonzero(piece == one) for one in dense]
+    rest = np.flatnonzero(~np.isin(piece, dense))
+    faces, charts, count = np.empty_like(triangles), [], 0
+    for group in groups + [rest] * bool(len(rest)):
+        a, b, c = (positions[triangles[group, k]] for k in range(3))
+        area = 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1)
+        # By the mean triangle of a place on the surface: large walls in a piece of small ornaments stay whole.
+        largest = 0.0 if group is rest else CHART_TRIANGLES * float((area**2).sum() / area.sum())
+        made, faces[group] = cut_piece(positions, triangles[group], largest)
+        faces[group] += np.uint32(count)
+        charts.append(made * np.float32(extent))
+        count += len(made)
+    return np.concatenate(charts), faces
+
+
+def cut_piece(
+    positions: NDArray[np.float32], triangles: NDArray[np.uint32], largest: float
+) -> tuple[NDArray[np.float32], NDArray[np.uint32]]:
+    """`cut` of triangles (n, 3) into charts of at most the area `largest` (0: any)."""
+    import xatlas
+
+    used, corner = np.unique(triangles, return_inverse=True)
     atlas = held(xatlas.Atlas())
-    atlas.add_mesh(positions, vertex.reshape(-1, 3).astype(np.uint32))
-    options = xatlas.PackOptions()
-    options.texels_per_unit = CHART_TEXELS
-    atlas.generate(xatlas.ChartOptions(), options)
+    atlas.add_mesh(positions[used], corner.reshape(-1, 3).astype(np.uint32))
+    cutting, packing = xatlas.ChartOptions(), xatlas.PackOptions()
+    cutting.max_chart_area, packing.texels_per_unit = largest, CHART_TEXELS
+    atlas.generate(cutting, packing)
     _, faces, texcoord = atlas.get_mesh(0)
-    return (texcoord * (atlas.width, atlas.height) / CHART_TEXELS * extent).astype(np.float32), faces
+    return (texcoord * (atlas.width, atlas.height) / CHART_TEXELS).astype(np.float32), faces
 
 
 def place(charts: NDArray[np.float32], faces: NDArray[np.uint32], scale: float, texels: int) -> NDArray[np.float32] | None:
@@ -83,6 +111,7 @@ def place(charts: NDArray[np.float32], faces: NDArray[np.uint32], scale: float, 
     atlas.add_uv_mesh(charts[used] * np.float32(scale), corner.reshape(-1, 3).astype(np.uint32))
     options = xatlas.PackOptions()
     options.padding, options.texels_per_unit, options.bilinear = PADDING, 1.0, True
+    options.resolution, options.bruteForce = texels, texels <= MOST_SEARCHED
     atlas.generate(xatlas.ChartOptions(), options)
     if max(atlas.width, atlas.height) > texels or atlas.atlas_count != 1:
         return None
