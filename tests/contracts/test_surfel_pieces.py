@@ -20,7 +20,7 @@ METHOD = ir.methods.IlluminanceComposition(
     place_surfels=ir.HaltonSurfels(surfels=300), place_caches=ir.CacheGrid(nx=3, ny=3, nz=3),
     link=ir.ShLinks(links=16, near_rays=16),
 )  # fmt: skip
-WITH_MAP = METHOD.replace(place_caches=ir.LightMap(texels=12, grid=ir.CacheGrid(nx=3, ny=3, nz=3)))
+WITH_MAP = METHOD.replace(place_caches=ir.LightMap(texels=24, grid=ir.CacheGrid(nx=3, ny=3, nz=3)))
 STAGES = ("place_surfels", "cluster_surfels", "place_caches", "link")
 
 
@@ -212,8 +212,9 @@ def last(value):
     ("sites.grid_cache", last(4_000_000), "a cache that is not there"),
     ("sites.grid_nearest", lambda a: a[:-1], "a box of 27 cells"),
     ("sites.nx", lambda n: -n, "a box of"),
-    ("sites.map_size", lambda n: n + 1, "a light map of 13 texels"),
+    ("sites.map_size", lambda n: n + 1, "a light map of 25 texels"),
     ("sites.map_texcoord", lambda a: a[:3], "3 corners"),
+    ("sites.map_triangle", last(12), "a chart of a triangle that the still surface lacks"),
     ("sites.map_texcoord", last(1e30), "beyond the light map"),
     ("links.link_node", last(2**20), "a node that is not there"),
     ("links.coefficients", lambda a: a[:-80], "arrays of other lengths"),

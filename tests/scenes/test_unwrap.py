@@ -9,7 +9,7 @@ import pytest
 
 import interreflect as ir
 from interreflect.scenes import unwrap as module
-from interreflect.scenes.charts_of import CHART_TRIANGLES, DENSE_TRIANGLES, cut, pieces_of
+from interreflect.scenes.charts_of import CHART_TRIANGLES, DENSE_TRIANGLES, PIECE_TEXELS, cut, pieces_of
 from interreflect.scenes.unwrap import pack, unwrap
 
 
@@ -75,14 +75,18 @@ def test_no_texel_is_read_by_two_charts(texels):
     assert max(readers(texcoord).values()) == 1
 
 
-def test_charts_of_pieces_with_many_triangles_are_of_few():
-    """Twice the triangles take twice the time, not four times."""
+def test_charts_of_pieces_with_many_triangles_are_bounded():
     triangles = globe(40)
     assert len(triangles) > DENSE_TRIANGLES
-    _, faces = cut(triangles)
-    of_chart = np.bincount(pieces_of(faces))
-    assert of_chart.max() < 2 * CHART_TRIANGLES
-    assert len(of_chart) < 20 * len(triangles) / CHART_TRIANGLES
+    area = triangle_areas(triangles)
+
+    def charts(side):
+        """Number of each triangle's chart, where the piece has that many texels a side."""
+        return pieces_of(cut(triangles, finest=side / np.sqrt(area.sum()))[1])
+
+    hardly_shown, shown = charts(PIECE_TEXELS**0.5 - 1), charts(PIECE_TEXELS**0.5 + 1)
+    assert np.bincount(hardly_shown).max() < 2 * CHART_TRIANGLES
+    assert shown.max() < hardly_shown.max()
 
 
 def test_nothing_has_a_chart_where_nothing_is_asked_for_and_none_fits():

@@ -24,14 +24,14 @@ struct alignas(64) ChartPlane {
 
 /// Texels of a square map over the still surface that have caches.
 struct LightMapSites {
-    int size = 0;                 // texels on a side; 0: there is no map
-    Buffer<std::uint32_t> cache;  // of every texel, row by row from v = 0; no_cache where none lies near
-    Buffer<vec2> texcoord;        // of every corner of every triangle, in texels; negative: the triangle has no chart
-    Buffer<std::uint32_t>
-        plane_of;  // follows from texcoord, as planes do: of every triangle: where its plane lies in the list; no_chart
-    Buffer<ChartPlane> planes;
+    int size = 0;                    // texels on a side; 0: there is no map
+    Buffer<std::uint32_t> cache;     // of every texel, row by row from v = 0; no_cache where none lies near
+    Buffer<std::uint32_t> triangle;  // those with charts, global numbers
+    Buffer<vec2> texcoord;           // of their corners, three each, in texels
+    Buffer<ChartPlane> planes;       // of each of them; follows from its corners
+    Buffer<std::uint32_t> plane_of;  // of every triangle of the scene: the number of its plane, or no_chart
 
-    std::size_t bytes() const { return cache.bytes() + texcoord.bytes() + plane_of.bytes() + planes.bytes(); }
+    std::size_t bytes() const { return cache.bytes() + triangle.bytes() + texcoord.bytes() + planes.bytes() + plane_of.bytes(); }
 };
 /// A box of caches, x fastest.
 struct GridSites {

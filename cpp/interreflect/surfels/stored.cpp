@@ -75,7 +75,7 @@ void complete(ClusteredSurfels& surfels, const Scene&) { list_parents(surfels.tr
 void complete(CacheSites& sites, const Scene& scene) { lay_planes(sites.map, scene); }
 
 void check_stored(const CacheSites& sites, const Scene& scene) {
-    const std::size_t n = sites.size(), corners = 3 * scene.geometry->groups.front().triangle_count;
+    const std::size_t n = sites.size(), triangles = scene.geometry->groups.front().triangle_count;
     need(sites.normal.size() == n && sites.offset.size() == n, "caches: arrays of different lengths");
     need(finite(sites.position) && finite(sites.normal) &&
              std::ranges::all_of(sites.offset, [](float o) { return std::isfinite(o); }),
@@ -83,12 +83,15 @@ void check_stored(const CacheSites& sites, const Scene& scene) {
     const LightMapSites& map = sites.map;
     const auto side = static_cast<std::size_t>(std::clamp(map.size, 0, most_side));
     need(map.size >= 0 && map.size <= most_side && map.cache.size() == side * side &&
-             (side > 0 ? map.texcoord.size() >= corners : map.texcoord.empty()),
+             map.texcoord.size() == 3 * map.triangle.size() && (side > 0 || map.triangle.empty()),
          "caches: a light map of " + std::to_string(map.size) + " texels a side with " + std::to_string(map.cache.size()) +
-             " texels and " + std::to_string(map.texcoord.size()) + " corners");
+             " texels and " + std::to_string(map.texcoord.size()) + " corners of " + std::to_string(map.triangle.size()) +
+             " triangles");
+    need(below(map.triangle, triangles),
+         "caches: a chart of a triangle that the still surface lacks; it has " + std::to_string(triangles));
     need(std::ranges::all_of(
              map.texcoord,
-             [&](const vec2& t) { return std::min(t.x, t.y) >= -1.0f && std::max(t.x, t.y) <= static_cast<float>(map.size); }),
+             [&](const vec2& t) { return std::min(t.x, t.y) >= 0.0f && std::max(t.x, t.y) <= static_cast<float>(map.size); }),
          "caches: a texture coordinate beyond the light map");
     const GridSites& grid = sites.grid;
     bool sound = true;

@@ -19,8 +19,9 @@ LEAST_TEXELS = 4.0  # of a chart
 TRIES = 9  # of scales, by bisection
 # Along the scene's longest side, while charts are cut: xatlas stretches each to whole texels (1 % on Sponza), and packs them in vain.
 CHART_TEXELS = 1024.0
-# xatlas takes as long for a chart as the square of its triangles: pieces of more than so many get charts of about so few.
-DENSE_TRIANGLES, CHART_TRIANGLES = 2048, 512
+# xatlas takes as long for a chart as the square of its triangles: pieces of more than so many get charts of about so few, where not even
+# so many texels would be theirs were no texel lost.
+DENSE_TRIANGLES, CHART_TRIANGLES, PIECE_TEXELS = 2048, 512, 256.0
 MOST_SEARCHED = 512  # texels on a side up to which charts are tried in every place, which fills a map by a tenth more
 _atlases: list[Any] = []
 
@@ -45,15 +46,15 @@ def pieces_of(triangles: NDArray[Any]) -> NDArray[np.int32]:
 def pack(corners: NDArray[np.float32], area: NDArray[np.float32], texels: int) -> NDArray[np.float32]:
     """(n, 3, 2): texture coordinates of triangles (n, 3, 3) in texels, at the finest scale found at which all charts that are large
     enough there fit into one map; -1 for the others."""
-    charts, faces = cut(corners)
+    finest = texels / float(np.sqrt(area.sum()))  # texels a unit of length, were nothing lost between charts
+    charts, faces = cut(corners, finest)
     chart = pieces_of(faces)
     size = np.bincount(chart, weights=area)[chart]  # of each triangle's chart, scene units squared
-    finest = texels / float(np.sqrt(area.sum()))  # texels a unit of length, were nothing lost between charts
     low, high, scale = 0.0, finest, 0.8 * finest
     best = np.full((*corners.shape[:2], 2), -1, np.float32)
     for _ in range(TRIES):
         large = size * scale**2 >= LEAST_TEXELS
-        packed = place(charts, faces[large], scale, texels) if large.any() else None
+        packed = place(charts, faces[large], scale, texels)
         if packed is None:
             high = scale
         else:
@@ -63,22 +64,24 @@ def pack(corners: NDArray[np.float32], area: NDArray[np.float32], texels: int) -
     return best
 
 
-def cut(corners: NDArray[np.float32]) -> tuple[NDArray[np.float32], NDArray[np.uint32]]:
-    """Charts of triangles (n, 3, 3): texture coordinates (m, 2) in units of the surface's length, and the triangles' corners (n, 3)."""
+def cut(corners: NDArray[np.float32], finest: float) -> tuple[NDArray[np.float32], NDArray[np.uint32]]:
+    """Charts of triangles (n, 3, 3): texture coordinates (m, 2) in units of the surface's length, and the triangles' corners (n, 3).
+    finest: texels a unit of length that no map will exceed."""
     # The same charts whatever the scene's place and unit: xatlas knows lengths below which it welds.
     low, extent = corners.reshape(-1, 3).min(0), float(np.ptp(corners.reshape(-1, 3), axis=0).max())
     positions, vertex = np.unique((corners.reshape(-1, 3) - low) / np.float32(extent), axis=0, return_inverse=True)
     triangles = vertex.reshape(-1, 3).astype(np.uint32)
     piece = pieces_of(triangles)
-    dense = np.flatnonzero(np.bincount(piece) > DENSE_TRIANGLES)
+    a, b, c = (positions[triangles[:, k]] for k in range(3))
+    area = 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1)
+    hardly_shown = np.bincount(piece, weights=area) * (finest * extent) ** 2 < PIECE_TEXELS
+    dense = np.flatnonzero(hardly_shown & (np.bincount(piece) > DENSE_TRIANGLES))
     groups = [np.flatnonzero(piece == one) for one in dense]
     rest = np.flatnonzero(~np.isin(piece, dense))
     faces, charts, count = np.empty_like(triangles), [], 0
     for group in groups + [rest] * bool(len(rest)):
-        a, b, c = (positions[triangles[group, k]] for k in range(3))
-        area = 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1)
-        # By the mean triangle of a place on the surface: large walls in a piece of small ornaments stay whole.
-        largest = 0.0 if group is rest else CHART_TRIANGLES * float((area**2).sum() / area.sum())
+        # By the mean triangle of a place on the surface.
+        largest = 0.0 if group is rest else CHART_TRIANGLES * float((area[group] ** 2).sum() / area[group].sum())
         made, faces[group] = cut_piece(positions, triangles[group], largest)
         faces[group] += np.uint32(count)
         charts.append(made * np.float32(extent))
@@ -105,6 +108,9 @@ def cut_piece(
 def place(charts: NDArray[np.float32], faces: NDArray[np.uint32], scale: float, texels: int) -> NDArray[np.float32] | None:
     """(n, 3, 2): the charts of these triangles at that scale, in texels; None where they do not fit."""
     import xatlas
+
+    if not len(faces):
+        return np.empty((0, 3, 2), np.float32)
 
     used, corner = np.unique(faces, return_inverse=True)
     atlas = held(xatlas.Atlas())

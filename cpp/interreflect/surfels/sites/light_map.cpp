@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -24,11 +25,15 @@ void check(const LightMap& technique, const Scene& scene, std::span<const vec2> 
     if (texcoord.size() != corners)
         throw std::invalid_argument("light map: texcoord must have " + std::to_string(corners) +
                                     " entries, three a triangle, got " + std::to_string(texcoord.size()));
-    for (std::size_t i = 0; i < corners; ++i)
-        if (!(texcoord[i].x <= static_cast<float>(technique.texels)) || !(texcoord[i].y <= static_cast<float>(technique.texels)))
+    const auto side = static_cast<float>(technique.texels);
+    for (std::size_t i = 0; i < corners; ++i) {
+        const float least = texcoord[i - i % 3].x < 0.0f ? -std::numeric_limits<float>::max() : 0.0f;
+        const vec2& at = texcoord[i];
+        if (!(std::min(at.x, at.y) >= least) || !(at.x <= side) || !(at.y <= side))
             throw std::invalid_argument("light map: texture coordinates of triangle " + std::to_string(i / 3) +
                                         " are not finite or lie beyond the map's " + std::to_string(technique.texels) +
                                         " texels");
+    }
 }
 
 /// Barycentric weights of a place at least an eighth of a texel inside of a triangle: on its very edge half of the hemisphere may
@@ -42,6 +47,8 @@ vec3 inset(const vec3& weights, const vec2* at, float area) {
     }
     return moved / (moved.x + moved.y + moved.z);
 }
+
+bool has_area(const Corners& c) { return glm::cross(c.b - c.a, c.c - c.a) != vec3(0); }
 
 float cross(const vec2& a, const vec2& b) { return a.x * b.y - a.y * b.x; }
 
@@ -139,18 +146,12 @@ class Map {
 }  // namespace
 
 void lay_planes(LightMapSites& map, const Scene& scene) {
-    const Group& still = scene.geometry->groups.front();
-    map.plane_of = Buffer<std::uint32_t>(scene.geometry->arrays->triangles.size(), no_chart);
-    std::vector<ChartPlane> planes;
-    for (std::uint32_t t = still.first_triangle; map.size > 0 && t < still.first_triangle + still.triangle_count; ++t) {
-        const vec2* at = map.texcoord.data() + 3 * static_cast<std::size_t>(t);
-        const Corners c = world_corners(*scene.geometry, 0, t);
-        if (at->x < 0.0f || glm::cross(c.b - c.a, c.c - c.a) == vec3(0)) continue;
-        map.plane_of[t] = static_cast<std::uint32_t>(planes.size());
-        planes.push_back(plane_of(c, at));
+    map.planes = Buffer<ChartPlane>(map.triangle.size());
+    if (map.size > 0) map.plane_of = Buffer<std::uint32_t>(scene.geometry->arrays->triangles.size(), no_chart);
+    for (std::uint32_t k = 0; k < map.triangle.size(); ++k) {
+        map.planes[k] = plane_of(world_corners(*scene.geometry, 0, map.triangle[k]), &map.texcoord[3 * std::size_t{k}]);
+        map.plane_of[map.triangle[k]] = k;
     }
-    map.planes = Buffer<ChartPlane>(planes.size());
-    std::ranges::copy(planes, map.planes.begin());
 }
 
 CacheSites place_caches(const LightMap& technique, const Scene& scene, const Intersector& intersector, const Bounds& box,
@@ -158,8 +159,12 @@ CacheSites place_caches(const LightMap& technique, const Scene& scene, const Int
     check(technique, scene, texcoord);
     Map map(technique.texels, scene);
     const Group& still = scene.geometry->groups.front();
-    for (std::uint32_t t = still.first_triangle; t < still.first_triangle + still.triangle_count; ++t)
-        if (texcoord[3 * static_cast<std::size_t>(t)].x >= 0.0f) map.draw(t, &texcoord[3 * static_cast<std::size_t>(t)]);
+    std::vector<std::uint32_t> charted;
+    for (std::uint32_t t = still.first_triangle; t < still.first_triangle + still.triangle_count; ++t) {
+        if (texcoord[3 * std::size_t{t}].x < 0.0f || !has_area(world_corners(*scene.geometry, 0, t))) continue;
+        charted.push_back(t);
+        map.draw(t, &texcoord[3 * std::size_t{t}]);
+    }
     map.drop(technique.most_backs, intersector);
     map.dilate();
 
@@ -178,8 +183,11 @@ CacheSites place_caches(const LightMap& technique, const Scene& scene, const Int
     sites.map.size = technique.texels;
     sites.map.cache = Buffer<std::uint32_t>(map.numbers().size());
     std::ranges::copy(map.numbers(), sites.map.cache.begin());
-    sites.map.texcoord = Buffer<vec2>(texcoord.size());
-    std::ranges::copy(texcoord, sites.map.texcoord.begin());
+    sites.map.triangle = Buffer<std::uint32_t>(charted.size());
+    std::ranges::copy(charted, sites.map.triangle.begin());
+    sites.map.texcoord = Buffer<vec2>(3 * charted.size());
+    for (std::size_t k = 0; k < charted.size(); ++k)
+        std::copy_n(&texcoord[3 * std::size_t{charted[k]}], 3, &sites.map.texcoord[3 * k]);
     lay_planes(sites.map, scene);
     sites.counts.caches = n;
     return sites;

@@ -38,7 +38,7 @@ struct LightMap {
 CacheSites place_caches(const LightMap& technique, const Scene& scene, const Intersector& intersector, const Bounds& box,
                         std::span<const vec2> texcoord);
 
-/// Fills in the planes of a map over a scene, of all triangles that have a chart and an area.
+/// Fills in the planes of a map over a scene. Its triangles must be the still surface's.
 void lay_planes(LightMapSites& map, const Scene& scene);
 
 }  // namespace interreflect
