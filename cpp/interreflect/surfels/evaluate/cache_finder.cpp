@@ -38,10 +38,10 @@ struct Slots {
     /// So that the weights sum up to 1.
     HWY_INLINE void store(int slots, std::size_t at, NearCaches& near) const {
         const Tag d;
-        const Vector some = hn::IfThenElse(hn::Gt(sum, hn::Zero(d)), sum, hn::Set(d, 1.0f));
+        const Vector one = hn::Set(d, 1.0f), scale = hn::Div(one, hn::IfThenElse(hn::Gt(sum, hn::Zero(d)), sum, one));
         for (int k = 0; k < slots; ++k) {
             hn::Store(cache[k], Whole(), reinterpret_cast<std::int32_t*>(near.cache[k] + at));
-            hn::Store(hn::Div(weight[k], some), d, near.weight[k] + at);
+            hn::Store(hn::Mul(weight[k], scale), d, near.weight[k] + at);
         }
     }
 };

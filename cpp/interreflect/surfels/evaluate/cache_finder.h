@@ -1,5 +1,6 @@
 /// Which caches a pixel's light is interpolated from.
 #pragma once
+#include <algorithm>
 #include <cstdint>
 
 #include "data/gbuffer.h"
@@ -15,11 +16,11 @@ struct NearCaches {
     alignas(64) std::uint32_t cache[slots][length];
     alignas(64) float weight[slots][length];
 
-    /// Slots of a pixel that are used.
-    int count(int pixel) const {
-        int used = 0;
-        for (const auto& slot : weight) used += slot[pixel] > 0.0f ? 1 : 0;
-        return used;
+    /// Slots of the first `pixels` pixels that are used.
+    void count(int pixels, std::int32_t* used) const {
+        std::fill_n(used, pixels, 0);
+        for (const auto& slot : weight)
+            for (int pixel = 0; pixel < pixels; ++pixel) used[pixel] += slot[pixel] > 0.0f ? 1 : 0;
     }
 };
 

@@ -59,8 +59,10 @@ SurfelLight evaluate(const DirectLinks&, const CacheLinks& links, const NodeLigh
                 Reflected sum;
                 if (gbuffer.hit(pixel)) {
                     const PixelSurface surface(gbuffer, scene, pixel);
+                    std::uint64_t used = 0;
                     for (int k = 0; k < NearCaches::slots; ++k) {
                         if (!(near.weight[k][of] > 0.0f)) continue;
+                        ++used;
                         const std::size_t first = near.cache[k][of] * per_cache;
                         for (std::size_t i = first; i < first + per_cache; ++i)
                             sum.add(surface,
@@ -69,8 +71,7 @@ SurfelLight evaluate(const DirectLinks&, const CacheLinks& links, const NodeLigh
                                     near.weight[k][of]);
                     }
                     Counts& mine = counts[tile.index];
-                    const int used = near.count(of);
-                    mine.links += static_cast<std::uint64_t>(used) * per_cache;
+                    mine.links += used * per_cache;
                     ++(used > 0 ? mine.covered_pixels : mine.uncovered_pixels);
                 }
                 made.gathered.irradiance[pixel] = sum.irradiance;

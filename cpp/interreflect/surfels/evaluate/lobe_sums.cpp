@@ -25,10 +25,10 @@ namespace hn = hwy::HWY_NAMESPACE;
 constexpr std::size_t lanes = hn::MaxLanes(Tag());
 constexpr int most_coefficients = 3 * most_bands * most_bands;
 
-/// What each coefficient weighs in a vector of lobes; bands that weigh nothing in all of them are left out.
+/// What each coefficient weighs in a vector of lobes, up to the last band that weighs something in one of them.
 struct LobeWeights {
     alignas(64) float value[most_bands * most_bands][lanes];
-    bool used[most_bands];
+    int count;  // of coefficients
 
     template <int bands>
     HWY_INLINE void set(const Vec3& axis, Vector exponent) {
@@ -36,7 +36,7 @@ struct LobeWeights {
         Vector scale[bands];
         for (int l = 0; l < bands; ++l) {
             scale[l] = band_scale(l, exponent);
-            used[l] = !hn::AllTrue(d, hn::Eq(scale[l], hn::Zero(d)));
+            if (!hn::AllTrue(d, hn::Eq(scale[l], hn::Zero(d)))) count = (l + 1) * (l + 1);
         }
         const auto& norms = detail::harmonic_norms();
         visit_harmonics<bands>(axis, [&](int l, int m, Vector p, Vector cosine, Vector sine) HWY_ATTR {
@@ -68,14 +68,19 @@ HWY_INLINE void load_cache(const LightCaches& caches, std::size_t cache, float* 
     for (std::size_t i = 0; i < stride; i += lanes) hn::Store(hn::PromoteTo(d, hn::LoadU(half, from + i)), d, coefficients + i);
 }
 
-/// A channel of a cache over the lobes.
-HWY_INLINE Vector over(const LobeWeights& lobes, const float* coefficients, int bands) {
+/// A cache's three channels over the lobes: sums side by side, as each addition waits for the one before.
+HWY_INLINE Vec3 over(const LobeWeights& lobes, const float* coefficients, const LightCaches& caches) {
     const Tag d;
-    Vector sum = hn::Zero(d);
-    for (int l = 0; l < bands; ++l)
-        if (lobes.used[l])
-            for (int i = l * l; i < (l + 1) * (l + 1); ++i)
-                sum = hn::MulAdd(hn::Set(d, coefficients[i]), hn::Load(d, lobes.value[i]), sum);
+    const float *second = coefficients + caches.luma(), *third = second + caches.chrominance();
+    const int all = lobes.count, both = std::min(all, caches.chrominance());
+    Vec3 sum{hn::Zero(d), hn::Zero(d), hn::Zero(d)};
+    for (int i = 0; i < both; ++i) {
+        const Vector weight = hn::Load(d, lobes.value[i]);
+        sum.x = hn::MulAdd(hn::Set(d, coefficients[i]), weight, sum.x);
+        sum.y = hn::MulAdd(hn::Set(d, second[i]), weight, sum.y);
+        sum.z = hn::MulAdd(hn::Set(d, third[i]), weight, sum.z);
+    }
+    for (int i = both; i < all; ++i) sum.x = hn::MulAdd(hn::Set(d, coefficients[i]), hn::Load(d, lobes.value[i]), sum.x);
     return sum;
 }
 
@@ -143,10 +148,7 @@ void SumLobes(const LightCaches& caches, const NearCaches& near, int count, Lobe
         Vec3 mean{hn::Zero(d), hn::Zero(d), hn::Zero(d)};
         Shared(near, at).for_each([&](std::uint32_t cache, Vector weight) HWY_ATTR {
             load_cache(caches, cache, coefficients);
-            const Vec3 light{over(weights, coefficients, caches.bands),
-                             over(weights, coefficients + caches.luma(), caches.chrominance_bands),
-                             over(weights, coefficients + caches.luma() + caches.chrominance(), caches.chrominance_bands)};
-            mean = moved(mean, light, hn::Mul(weight, hn::Set(d, caches.unit[cache])));
+            mean = moved(mean, over(weights, coefficients, caches), hn::Mul(weight, hn::Set(d, caches.unit[cache])));
         });
         store3(colour_of(mean, caches.ycocg), &lobes.mean[at].x);
     }

@@ -33,22 +33,23 @@ class Runs {
 
     Counts evaluate(std::size_t first, int count) {
         finder_.find(first, count, near_);
+        near_.count(count, used_);
         for (int i = 0; i < count; ++i) {
             const vec3& normal = g_.normal[first + static_cast<std::size_t>(i)];
             for (int k = 0; k < 3; ++k) lobes_.axis[k][i] = normal[k];
             lobes_.exponent[i] = 1.0f;
         }
         sum_lobes(caches_, near_, count, lobes_);
-        Counts counts;
+        std::uint64_t hits = 0, covered = 0, evaluations = 0;
         for (int i = 0; i < count; ++i) {
             const std::size_t pixel = first + static_cast<std::size_t>(i);
-            light_.gathered.irradiance[pixel] = vec3(0), light_.glossy.radiance[pixel] = vec3(0);
-            if (!g_.hit(pixel)) continue;
-            light_.gathered.irradiance[pixel] = pi * lobes_.mean[i];
-            const int used = near_.count(i);
-            counts.cache_evaluations += static_cast<std::uint64_t>(used);
-            ++(used > 0 ? counts.covered_pixels : counts.uncovered_pixels);
+            const bool hit = g_.hit(pixel);
+            light_.gathered.irradiance[pixel] = hit ? pi * lobes_.mean[i] : vec3(0);
+            light_.glossy.radiance[pixel] = vec3(0);
+            hits += hit ? 1 : 0, covered += used_[i] > 0 ? 1 : 0, evaluations += static_cast<std::uint64_t>(used_[i]);
         }
+        Counts counts;
+        counts.cache_evaluations = evaluations, counts.covered_pixels = covered, counts.uncovered_pixels = hits - covered;
         reflect(first, count);
         return counts;
     }
@@ -59,7 +60,7 @@ class Runs {
         reflections_.count = 0;
         for (int i = 0; i < count; ++i) {
             const std::size_t pixel = first + static_cast<std::size_t>(i);
-            if (!g_.hit(pixel) || !(max_component(g_.specular[pixel]) > 0.0f) || near_.count(i) == 0) continue;
+            if (!g_.hit(pixel) || !(max_component(g_.specular[pixel]) > 0.0f) || used_[i] == 0) continue;
             const int to = reflections_.count;
             for (int k = 0; k < NearCaches::slots; ++k)
                 near_.cache[k][to] = near_.cache[k][i], near_.weight[k][to] = near_.weight[k][i];
@@ -84,6 +85,7 @@ class Runs {
     const GBuffer& g_;
     SurfelLight& light_;
     NearCaches near_;
+    std::int32_t used_[run];
     Lobes lobes_;
     Reflections reflections_;
 };
