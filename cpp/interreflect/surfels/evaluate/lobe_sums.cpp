@@ -68,17 +68,31 @@ HWY_INLINE void load_cache(const LightCaches& caches, std::size_t cache, float* 
     for (std::size_t i = 0; i < stride; i += lanes) hn::Store(hn::PromoteTo(d, hn::LoadU(half, from + i)), d, coefficients + i);
 }
 
-/// A cache's three channels over the lobes: sums side by side, as each addition waits for the one before.
+/// Adds up three channels over coefficients [begin, end) of the lobes.
+HWY_INLINE void add_channels(const LobeWeights& lobes, const float* const* channel, int begin, int end, Vec3& sum) {
+    const Tag d;
+    for (int i = begin; i < end; ++i) {
+        const Vector weight = hn::Load(d, lobes.value[i]);
+        sum.x = hn::MulAdd(hn::Set(d, channel[0][i]), weight, sum.x);
+        sum.y = hn::MulAdd(hn::Set(d, channel[1][i]), weight, sum.y);
+        sum.z = hn::MulAdd(hn::Set(d, channel[2][i]), weight, sum.z);
+    }
+}
+
+/// A cache's three channels over the lobes, side by side, as each addition waits for the one before.
 HWY_INLINE Vec3 over(const LobeWeights& lobes, const float* coefficients, const LightCaches& caches) {
     const Tag d;
-    const float *second = coefficients + caches.luma(), *third = second + caches.chrominance();
+    const float* const channel[3] = {coefficients, coefficients + caches.luma(),
+                                     coefficients + caches.luma() + caches.chrominance()};
     const int all = lobes.count, both = std::min(all, caches.chrominance());
     Vec3 sum{hn::Zero(d), hn::Zero(d), hn::Zero(d)};
-    for (int i = 0; i < both; ++i) {
-        const Vector weight = hn::Load(d, lobes.value[i]);
-        sum.x = hn::MulAdd(hn::Set(d, coefficients[i]), weight, sum.x);
-        sum.y = hn::MulAdd(hn::Set(d, second[i]), weight, sum.y);
-        sum.z = hn::MulAdd(hn::Set(d, third[i]), weight, sum.z);
+    if (both == 9) {  // the cosine's, unrolled: two sums each
+        Vec3 other = sum;
+        add_channels(lobes, channel, 0, 5, sum);
+        add_channels(lobes, channel, 5, 9, other);
+        sum = {hn::Add(sum.x, other.x), hn::Add(sum.y, other.y), hn::Add(sum.z, other.z)};
+    } else {
+        add_channels(lobes, channel, 0, both, sum);
     }
     for (int i = both; i < all; ++i) sum.x = hn::MulAdd(hn::Set(d, coefficients[i]), hn::Load(d, lobes.value[i]), sum.x);
     return sum;
