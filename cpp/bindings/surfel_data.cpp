@@ -54,8 +54,20 @@ void bind_surfels_data(py::module_& m) {
         .def_property_readonly("bytes", &Clustered::bytes);
     py::class_<NodeLight, std::shared_ptr<NodeLight>>(m, "NodeLight", "What every node of a tree of surfels sends on.")
         .def_property_readonly(
-            "value", [](const py::object& self) { return vectors(self.cast<const NodeLight&>().value, self); },
-            "(2n - 1, 3): flux, W, or radiosity, W/m^2.")
+            "value",
+            [](const py::object& self) {
+                const auto& light = self.cast<const NodeLight&>();
+                if (!light.is_packed()) return vectors(light.value, self);
+                py::array_t<float> values({static_cast<py::ssize_t>(light.size()), py::ssize_t{3}});
+                for (std::size_t i = 0; i < light.size(); ++i) {
+                    const vec3 value = light.at(i);
+                    for (int k = 0; k < 3; ++k) values.mutable_data()[3 * i + static_cast<std::size_t>(k)] = value[k];
+                }
+                return values;
+            },
+            "(2n - 1, 3): flux, W, or radiosity, W/m^2; a copy where it is packed.")
+        .def_property_readonly("packed", &NodeLight::is_packed,
+                               "Whether each is kept in 4 bytes, nine bits a colour and one exponent.")
         .def_readonly("radiosity", &NodeLight::radiosity)
         .def_property_readonly("bytes", &NodeLight::bytes);
 }

@@ -199,16 +199,19 @@ void bind_run_time(py::module_& m) {
         "By maps that are there.");
     m.def(
         "pull",
-        [](const ClusteredSurfels& surfels, const py::object& radiance, bool radiosity) {
+        [](const ClusteredSurfels& surfels, const py::object& radiance, bool radiosity, bool pack) {
             const auto array = exact_array<float>(radiance, "radiance");
             if (array.ndim() < 1 || array.shape(array.ndim() - 1) != 3)
                 throw py::value_error("radiance must have shape (..., 3)");
             const std::span<const vec3> values(reinterpret_cast<const vec3*>(array.data()),
                                                static_cast<std::size_t>(array.size()) / 3);
-            return run([&] { return std::make_shared<NodeLight>(pull(surfels.tree, values, radiosity)); });
+            return run([&] {
+                NodeLight light = pull(surfels.tree, values, radiosity);
+                return std::make_shared<NodeLight>(pack ? packed(std::move(light)) : std::move(light));
+            });
         },
-        py::arg("surfels"), py::arg("radiance"), py::arg("radiosity") = false,
-        "The sum of the surfels' flux under every node, or the mean of their radiosity.");
+        py::arg("surfels"), py::arg("radiance"), py::arg("radiosity") = false, py::arg("packed") = false,
+        "The sum of the surfels' flux under every node, or the mean of their radiosity; packed: in 4 bytes a node.");
     m.def(
         "choose_links",
         [](const FluxLinks& technique, const LinkCandidates& candidates, const ClusteredSurfels& surfels, const NodeLight& light,

@@ -3155,13 +3155,19 @@ class NodeLight:
         ...
 
     @property
+    def packed(self) -> bool:
+        """
+        Whether each is kept in 4 bytes, nine bits a colour and one exponent.
+        """
+
+    @property
     def radiosity(self) -> bool:
         ...
 
     @property
     def value(self) -> numpy.typing.NDArray[numpy.float32]:
         """
-        (2n - 1, 3): flux, W, or radiosity, W/m^2.
+        (2n - 1, 3): flux, W, or radiosity, W/m^2; a copy where it is packed.
         """
 class CacheSites:
     """
@@ -3964,9 +3970,9 @@ def propagate(technique: LightPropagation, injected: LightVolume, blockers: Geom
     """
     The light that comes to every cell from others. blockers: None: nothing blocks; ValueError for another grid's.
     """
-def pull(surfels: ClusteredSurfels, radiance: typing.Any, radiosity: bool=False) -> NodeLight:
+def pull(surfels: ClusteredSurfels, radiance: typing.Any, radiosity: bool=False, packed: bool=False) -> NodeLight:
     """
-    The sum of the surfels' flux under every node, or the mean of their radiosity.
+    The sum of the surfels' flux under every node, or the mean of their radiosity; packed: in 4 bytes a node.
     """
 def ray_rates(repeats: typing.SupportsInt | typing.SupportsIndex) -> dict[str, typing.Any]:
     """

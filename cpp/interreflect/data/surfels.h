@@ -6,6 +6,7 @@
 
 #include "data/buffer.h"
 #include "data/counts.h"
+#include "math/shared_exponent.h"
 #include "math/vectors.h"
 
 namespace interreflect {
@@ -43,12 +44,17 @@ struct SurfelTree {
     std::size_t bytes() const { return leaves.bytes() + leaf_end.bytes() + node.bytes() + area.bytes() + parent.bytes(); }
 };
 
-/// Of every node: flux, W; or radiosity, W/m^2, where that was pulled.
+/// Of every node: flux, W; or radiosity, W/m^2, where that was pulled. As floats, or packed (math/shared_exponent.h).
 struct NodeLight {
     Buffer<vec3> value;
     bool radiosity = false;
+    Buffer<std::uint32_t> packed{};  // multiples of `unit`; then there are no floats
+    float unit = 1.0f;
 
-    std::size_t bytes() const { return value.bytes(); }
+    bool is_packed() const { return !packed.empty(); }
+    std::size_t size() const { return is_packed() ? packed.size() : value.size(); }
+    vec3 at(std::size_t node) const { return is_packed() ? from_shared_exponent(packed[node]) * unit : value[node]; }
+    std::size_t bytes() const { return value.bytes() + packed.bytes(); }
 };
 
 }  // namespace interreflect

@@ -45,6 +45,25 @@ HWY_INLINE Vector zonal_lanes(Vector x, Vector c, Vector c2, Vector s2) {
                        hn::MulSub(hn::MulAdd(hn::MulSub(c2, n(429.0f), n(495.0f)), c2, n(135.0f)), c2, n(5.0f)));
 }
 
+/// What nodes send, one a lane.
+template <class Nodes>
+HWY_INLINE Vec3 sent_by(const NodeLight& light, Nodes node) {
+    const Tag d;
+    const hn::RebindToSigned<Tag> di;
+    if (!light.is_packed()) {
+        const auto at = hn::Add(node, hn::Add(node, node));
+        const float* const values = &light.value[0].x;
+        return {hn::GatherIndex(d, values, at), hn::GatherIndex(d, values + 1, at), hn::GatherIndex(d, values + 2, at)};
+    }
+    const hn::RebindToUnsigned<Tag> du;
+    const auto bits = hn::BitCast(du, hn::GatherIndex(di, reinterpret_cast<const std::int32_t*>(light.packed.data()), node));
+    const auto exponent = hn::ShiftLeft<23>(hn::Add(hn::ShiftRight<27>(bits), hn::Set(du, 127U - 24U)));
+    const auto part = [&](auto shifted)
+                          HWY_ATTR { return hn::ConvertTo(d, hn::BitCast(di, hn::And(shifted, hn::Set(du, 511U)))); };
+    const Vec3 parts{part(bits), part(hn::ShiftRight<9>(bits)), part(hn::ShiftRight<18>(bits))};
+    return scaled(parts, hn::Mul(hn::BitCast(d, exponent), hn::Set(d, light.unit)));
+}
+
 /// One cone a lane: where from, its zonal coefficients, and what it brings.
 template <int bands>
 struct ConeLanes {
@@ -64,8 +83,6 @@ HWY_INLINE ConeLanes<bands> load_cones(const CacheLinks& links, const NodeLight&
     const auto low = hn::Set(du, 0xffffU);
     const auto there = hn::FirstN(du, count);
     const auto from = hn::BitCast(di, hn::IfThenElseZero(there, node));
-    const auto at = hn::Add(from, hn::Add(from, from));
-    const float* const values = &light.value[0].x;
     const hn::Rebind<hwy::float16_t, Tag> half;
     const auto promoted = [&](auto bits) HWY_ATTR {
         return hn::PromoteTo(d, hn::BitCast(half, hn::DemoteTo(words, hn::BitCast(di, bits))));
@@ -76,8 +93,7 @@ HWY_INLINE ConeLanes<bands> load_cones(const CacheLinks& links, const NodeLight&
     const Vector c2 = hn::Mul(c, c), s2 = hn::Mul(s, hn::Sub(hn::Set(d, 2.0f), s));
     ConeLanes<bands> cones;
     cones.direction = octahedral_lanes(number(hn::And(place, low)), number(hn::ShiftRight<16>(place)));
-    cones.light =
-        scaled({hn::GatherIndex(d, values, at), hn::GatherIndex(d, values + 1, at), hn::GatherIndex(d, values + 2, at)}, f);
+    cones.light = scaled(sent_by(light, from), f);
     [&]<int... l>(std::integer_sequence<int, l...>) { ((cones.zonal[l] = zonal_lanes<l>(s, c, c2, s2)), ...); }
     (std::make_integer_sequence<int, bands>());
     return cones;

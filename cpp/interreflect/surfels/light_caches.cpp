@@ -16,9 +16,9 @@ constexpr std::size_t caches_a_block = 64, most_lanes = 16;
 }  // namespace
 
 void check_links(const CacheLinks& links, const NodeLight& light) {
-    if (links.nodes != light.value.size())
+    if (links.nodes != light.size())
         throw std::invalid_argument("links into a tree of " + std::to_string(links.nodes) + " nodes, light of " +
-                                    std::to_string(light.value.size()));
+                                    std::to_string(light.size()));
     if (links.radiosity != light.radiosity)
         throw std::invalid_argument(links.radiosity ? "these links take radiosity, not flux"
                                                     : "these links take flux, not radiosity");

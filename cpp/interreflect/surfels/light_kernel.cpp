@@ -78,7 +78,7 @@ void sum_links(const CacheLinks& links, const NodeLight& light, std::size_t cach
         for (auto& colour : one)
             for (Vector& part : colour) part = hn::Zero(d);
     const auto add = [&](std::size_t k, int to) HWY_ATTR {
-        const vec3& sent = light.value[links.node[first + k]];
+        const vec3 sent = light.at(links.node[first + k]);
         const Vector red = hn::Set(d, sent.x), green = hn::Set(d, sent.y), blue = hn::Set(d, sent.z);
         for (int v = 0; v < count; ++v) {
             const Vector c = hn::PromoteTo(d, hn::LoadU(half, coefficients + k * each + static_cast<std::size_t>(v) * lanes));

@@ -1,6 +1,7 @@
 #include "surfels/pull.h"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -69,7 +70,7 @@ NodeLight pull(const SurfelTree& tree, std::span<const vec3> radiance, bool as_r
     if (radiance.size() < n)
         throw std::invalid_argument("pull: light of " + std::to_string(radiance.size()) + " surfels for a tree of " +
                                     std::to_string(n));
-    NodeLight light{Buffer<vec3>(tree.nodes()), as_radiosity};
+    NodeLight light{Buffer<vec3>(tree.nodes()), as_radiosity, {}, 1.0f};
     const auto ranges = subtrees(tree);
     parallel_pieces(ranges.size(), [&](std::size_t piece) {
         const NodeRange& range = ranges[piece];
@@ -82,6 +83,27 @@ NodeLight pull(const SurfelTree& tree, std::span<const vec3> radiance, bool as_r
         add_children(tree, parents_before(tree, next), parents_before(tree, ranges[k].begin), light);
     add_children(tree, parents_before(tree, next), parents_before(tree, tree.nodes()), light);
     return light;
+}
+
+NodeLight packed(NodeLight light) {
+    if (light.is_packed() || light.value.empty()) return light;
+    constexpr std::size_t together = 16384;
+    const std::size_t n = light.value.size();
+    std::vector<float> brightest((n + together - 1) / together, 0.0f);
+    parallel_blocks(n, together, [&](std::size_t begin, std::size_t end) {
+        float most = 0;
+        for (std::size_t i = begin; i < end; ++i) most = std::max(most, max_component(light.value[i]));
+        brightest[begin / together] = most;
+    });
+    const float most = *std::ranges::max_element(brightest);
+    NodeLight made{{}, light.radiosity, Buffer<std::uint32_t>(n), 1.0f};
+    if (most > 0) made.unit = std::ldexp(1.0f, std::max(std::ilogb(most) - 15, -126));  // below 2^16
+    if (most > most_shared_exponent * made.unit) made.unit *= 2.0f;
+    const float inverse = 1.0f / made.unit;
+    parallel_blocks(n, together, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) made.packed[i] = to_shared_exponent(light.value[i] * inverse);
+    });
+    return made;
 }
 
 }  // namespace interreflect

@@ -81,6 +81,11 @@ class IlluminanceComposition(Method):
         default="all", choices=("all", "read"), doc="all caches, or those alone that the frame's pixels, or surfels of another bounce, read"
     )  # fmt: skip
 
+    patch_light: str = knob(
+        default="floats", choices=("floats", "shared exponent"),
+        doc="how patches' light is kept from the pull on: 12 bytes each, or 4, nine bits a colour and one exponent for them",
+    )  # fmt: skip
+
     place_surfels: Any = stage(default=_core.HaltonSurfels())
     cluster_surfels: Any = stage(default=_core.Agglomerative())
     place_caches: Any = stage(default=_core.LightMap())
@@ -243,7 +248,7 @@ class IlluminanceComposition(Method):
         """From the surfels to caches."""
         surfels = view.state["surfels"]
         with profile.stage("pull") as note:
-            patches = note(pull(surfels, sent, getattr(self.link, "pull", "flux") == "radiosity"))
+            patches = note(pull(surfels, sent, getattr(self.link, "pull", "flux") == "radiosity", self.patch_light != "floats"))
         links = to.links
         if isinstance(links, _core.LinkCandidates):
             with profile.stage("choose_links") as note:

@@ -52,9 +52,12 @@ def surfel_pixels(surfels: _core.ClusteredSurfels, scene: Scene) -> _core.GBuffe
     return _core.surfel_pixels(surfels, scene.core)
 
 
-def pull(surfels: _core.ClusteredSurfels, radiance: NDArray[np.float32], radiosity: bool = False) -> _core.NodeLight:
-    """What every patch of surfels sends on: the sum of flux, or the mean radiosity. radiance: (..., 3) of each surfel."""
-    return _core.pull(surfels, radiance, radiosity)
+def pull(
+    surfels: _core.ClusteredSurfels, radiance: NDArray[np.float32], radiosity: bool = False, packed: bool = False
+) -> _core.NodeLight:
+    """What every patch of surfels sends on: the sum of flux, or the mean radiosity. radiance: (..., 3) of each surfel. packed: in 4 bytes
+    a patch in place of 12, rounded by at most a 512th of the largest colour."""
+    return _core.pull(surfels, radiance, radiosity, packed)
 
 
 def used_caches(sites: _core.CacheSites, gbuffer: _core.GBuffer) -> NDArray[np.uint8]:

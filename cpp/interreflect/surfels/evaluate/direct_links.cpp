@@ -20,7 +20,7 @@ constexpr int tile_size = 16;  // pixels
 Beam beam_of(const ConeLink& link, const CacheLinks& links, const NodeLight& light) {
     const float scale = from_half(link.factor) * zonal_cone(0, from_half(link.one_less_cos)) * links.unit;
     return {octahedral_direction({static_cast<float>(link.x) / 65535.0f, static_cast<float>(link.y) / 65535.0f}),
-            light.value[link.node] * scale};
+            light.at(link.node) * scale};
 }
 
 /// The first coefficient is the solid angle's times y_0; the next three point along the mean direction.
@@ -29,7 +29,7 @@ Beam beam_of(std::size_t link, const CacheLinks& links, const NodeLight& light) 
     const vec3 towards(from_half(c[3]), from_half(c[1]), from_half(c[2]));
     const float length = glm::length(towards), constant = 0.5f / std::sqrt(pi);
     if (!(length > 0.0f)) return {};
-    return {towards / length, light.value[links.node[link]] * (from_half(c[0]) / constant * links.unit)};
+    return {towards / length, light.at(links.node[link]) * (from_half(c[0]) / constant * links.unit)};
 }
 
 void check(const CacheLinks& links, const NodeLight& light, const CacheSites& sites) {

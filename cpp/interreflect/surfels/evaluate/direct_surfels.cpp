@@ -44,8 +44,7 @@ std::vector<Read> reads_of(const Tile& tile, const CacheFinder& finder, int widt
 SurfelLight evaluate(const DirectLinks&, const AllSurfels& links, const CacheSites& sites, const ClusteredSurfels& surfels,
                      const NodeLight& light, const GBuffer& gbuffer, const Scene& scene, const Intersector& intersector,
                      std::uint32_t seed) {
-    if (light.value.size() != surfels.tree.nodes())
-        throw std::invalid_argument("DirectLinks: light of another number of surfels");
+    if (light.size() != surfels.tree.nodes()) throw std::invalid_argument("DirectLinks: light of another number of surfels");
     SurfelLight made = empty_surfel_light(gbuffer);
     const CacheFinder finder(sites, gbuffer);
     const SampledSurfels sampled(links, surfels, light, scene, intersector, seed);

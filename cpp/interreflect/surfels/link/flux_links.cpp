@@ -166,7 +166,7 @@ class FluxCut {
 Buffer<float> brightest_surfels(const SurfelTree& tree, const NodeLight& light) {
     Buffer<float> brightest(tree.nodes());
     for (std::uint32_t i = 0; i < tree.nodes(); ++i) {
-        const vec3& sent = light.value[i];
+        const vec3 sent = light.at(i);
         brightest[i] = tree.leaves[i] > 1
                            ? std::max(brightest[tree.left(i)], brightest[tree.right(i)])
                            : (0.25f * sent.x + 0.5f * sent.y + 0.25f * sent.z) / (light.radiosity ? 1.0f : tree.area[i]);
@@ -195,7 +195,7 @@ LinkCandidates link(const FluxLinks& technique, const CacheSites& sites, const C
 CacheLinks choose_links(const FluxLinks& technique, const LinkCandidates& candidates, const SurfelTree& tree,
                         const NodeLight& light, std::span<const std::uint8_t> used) {
     check_links(candidates.nodes, light);
-    if (tree.nodes() != light.value.size()) throw std::invalid_argument("choose_links: light of another tree");
+    if (tree.nodes() != light.size()) throw std::invalid_argument("choose_links: light of another tree");
     const std::size_t caches = candidates.nodes.caches;
     if (!used.empty() && used.size() != caches)
         throw std::invalid_argument("choose_links: `used` tells of " + std::to_string(used.size()) +

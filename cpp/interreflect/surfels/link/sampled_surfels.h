@@ -27,7 +27,7 @@ class SampledSurfels {
         look(sites, cache, memory, counts);
         const Surfels& all = surfels_.surfels;
         for (std::uint32_t i = 0; i < all.size(); ++i) {
-            const vec3 radiance = light_.value[surfels_.tree.node[i]] / (pi * (light_.radiosity ? 1.0f : all.area[i]));
+            const vec3 radiance = light_.at(surfels_.tree.node[i]) / (pi * (light_.radiosity ? 1.0f : all.area[i]));
             memory.seen.for_each_direction(
                 i, all.position[i], [&](const vec3& direction, float solid_angle) { add(direction, radiance, solid_angle); });
         }
