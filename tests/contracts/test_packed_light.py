@@ -73,15 +73,6 @@ def test_pictures_are_the_same_but_for_rounding(link, evaluate):
     assert 0 < np.abs(packed - plain).mean() / plain.mean() < (0.01 if isinstance(link, ir.FluxLinks) else 1e-3)
 
 
-def test_what_is_packed_is_the_librarys_format():
-    """As OpenGL's RGB9_E5: its published decoding, against ours."""
-    light = pulled(True)
-    mantissa = np.asarray(light.value, np.float64)
-    step = 2.0 ** (np.ceil(np.log2(mantissa.max(1, keepdims=True) * (512 / 511))) - 9)
-    multiples = mantissa / step
-    assert multiples == pytest.approx(np.rint(multiples), abs=1e-3) and multiples.max() <= 512
-
-
 def test_an_unknown_way_to_keep_light_is_a_value_error():
     with pytest.raises(ValueError, match="patch_light must be one of floats, shared exponent"):
         ir.methods.IlluminanceComposition(patch_light="halves")
