@@ -80,4 +80,16 @@ inline mat4 matrix4(const py::object& object, const char* name) {
     return m;
 }
 
+/// None, or an array of marks.
+struct Marks {
+    py::array_t<std::uint8_t> array;  // keeps the values
+    std::span<const std::uint8_t> values;
+
+    Marks(const py::object& given, const char* name) {
+        if (given.is_none()) return;
+        array = exact_array<std::uint8_t>(given, name);
+        values = {array.data(), static_cast<std::size_t>(array.size())};
+    }
+};
+
 }  // namespace interreflect::bindings

@@ -45,6 +45,7 @@ PYBIND11_MODULE(_core, m) {
     bind_caches(m);
     bind_virtual_lights(m);
     bind_surfels(m);
+    bind_frame_links(m);
     bind_stored_surfels(m);
     bind_light_volumes(m);
     bind_calibration(m);

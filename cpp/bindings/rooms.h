@@ -32,6 +32,7 @@ void bind_virtual_lights(py::module_& m);
 void bind_light_volumes(py::module_& m);
 void bind_surfel_data(py::module_& m);
 void bind_surfels(py::module_& m);
+void bind_frame_links(py::module_& m);
 void bind_stored_surfels(py::module_& m);
 void bind_calibration(py::module_& m);
 

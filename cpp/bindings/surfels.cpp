@@ -16,6 +16,7 @@
 #include "surfels/place.h"
 #include "surfels/place/spacing.h"
 #include "surfels/pull.h"
+#include "surfels/shadow_links.h"
 #include "surfels/sites.h"
 #include "surfels/surfel_pixels.h"
 #include "surfels/used_caches.h"
@@ -29,6 +30,8 @@ void bind_stages(py::module_& m) {
     bind_stage(m, "cluster_surfels", "Which surfels send light on as one.", false, static_cast<const ClusterSurfels*>(nullptr));
     bind_stage(m, "place_caches", "Where caches of incident radiance stand.", true, static_cast<const PlaceCaches*>(nullptr));
     bind_stage(m, "link", "Which patches of surfels send light to each cache.", true, static_cast<const Link*>(nullptr));
+    bind_stage(m, "shadow_links", "What bodies that move take from the light of links.", false,
+               static_cast<const ShadowLinks*>(nullptr));
     bind_stage(m, "evaluate", "What pixels get from caches of incident radiance.", true, static_cast<const Evaluate*>(nullptr));
 }
 
@@ -138,14 +141,6 @@ void bind_precomputation(py::module_& m) {
     };
     bind_link(static_cast<const ShLinks*>(nullptr));
     bind_link(static_cast<const RuntimeProjection*>(nullptr));
-    m.def(
-        "link",
-        [](const FluxLinks& technique, const CacheSites& sites, const ClusteredSurfels& surfels, const BoundScene& s) {
-            return run(
-                [&] { return std::make_shared<LinkCandidates>(link(technique, sites, surfels, s.scene, *s.intersector)); });
-        },
-        py::arg("technique"), py::arg("sites"), py::arg("surfels"), py::arg("scene"),
-        "Links from which every frame chooses: `choose_links`.");
 }
 
 /// A scene's point, spot and directional lights alone.
@@ -170,18 +165,6 @@ void bind_lamp_shadow(py::module_& m) {
         py::arg("technique"), py::arg("scene"), py::arg("gbuffer"), py::arg("seed") = 0,
         "What pixels reflect of point, spot and directional lights alone: emitters come through links.");
 }
-
-/// `used`: none, or a mark for every cache.
-struct Marks {
-    py::array_t<std::uint8_t> array;  // keeps the values
-    std::span<const std::uint8_t> values;
-
-    explicit Marks(const py::object& used) {
-        if (used.is_none()) return;
-        array = exact_array<std::uint8_t>(used, "used");
-        values = {array.data(), static_cast<std::size_t>(array.size())};
-    }
-};
 
 void bind_run_time(py::module_& m) {
     bind_lamp_shadow<TracedShadows>(m);
@@ -213,20 +196,9 @@ void bind_run_time(py::module_& m) {
         py::arg("surfels"), py::arg("radiance"), py::arg("radiosity") = false, py::arg("packed") = false,
         "The sum of the surfels' flux under every node, or the mean of their radiosity; packed: in 4 bytes a node.");
     m.def(
-        "choose_links",
-        [](const FluxLinks& technique, const LinkCandidates& candidates, const ClusteredSurfels& surfels, const NodeLight& light,
-           const py::object& used) {
-            const Marks marks(used);
-            return run([&] {
-                return std::make_shared<CacheLinks>(choose_links(technique, candidates, surfels.tree, light, marks.values));
-            });
-        },
-        py::arg("technique"), py::arg("candidates"), py::arg("surfels"), py::arg("light"), py::arg("used") = py::none(),
-        "The links that bring every cache most of this light.");
-    m.def(
         "light_caches",
         [](const CacheLinks& links, const NodeLight& light, int bands, int chrominance_bands, const py::object& used) {
-            const Marks marks(used);
+            const Marks marks(used, "used");
             return run([&] {
                 return std::make_shared<LightCaches>(light_caches(links, light, {bands, chrominance_bands}, marks.values));
             });
@@ -247,7 +219,7 @@ void bind_run_time(py::module_& m) {
         "sample_caches",
         [](const AllSurfels& technique, const CacheSites& sites, const ClusteredSurfels& surfels, const NodeLight& light,
            int chrominance_bands, const BoundScene& s, std::uint32_t seed, const py::object& used) {
-            const Marks marks(used);
+            const Marks marks(used, "used");
             return run([&] {
                 return std::make_shared<LightCaches>(light_caches(technique, sites, surfels, light,
                                                                   {technique.bands, chrominance_bands}, s.scene, *s.intersector,

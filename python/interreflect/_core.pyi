@@ -3664,6 +3664,85 @@ class AllSurfels:
     @property
     def near_rays(self) -> int:
         ...
+class BodyCones:
+    """A cone along every link through voxels of the bodies, which block the link's light and send their own."""
+    description: ClassVar[dict[str, Any]]
+    stages: ClassVar[tuple[str, ...]]
+
+    def __init__(self, *, resolution: int=..., aperture: float=..., step: float=..., first_diameter: float=..., normal_offset: float=..., level_bias: float=..., density: float=..., correlation: float=..., cut_off: float=..., own_surface: bool=..., start: str=..., start_height: float=..., most_steps: int=..., step_growth: float=..., opacity_correction: bool=...) -> None:
+        ...
+
+    def replace(self, *, resolution: int=..., aperture: float=..., step: float=..., first_diameter: float=..., normal_offset: float=..., level_bias: float=..., density: float=..., correlation: float=..., cut_off: float=..., own_surface: bool=..., start: str=..., start_height: float=..., most_steps: int=..., step_growth: float=..., opacity_correction: bool=...) -> BodyCones:
+        ...
+
+    def asdict(self) -> dict[str, Any]:
+        ...
+
+    def __hash__(self) -> int:
+        ...
+
+    def __eq__(self, other: object) -> bool:
+        ...
+
+    @property
+    def resolution(self) -> int:
+        ...
+
+    @property
+    def aperture(self) -> float:
+        ...
+
+    @property
+    def step(self) -> float:
+        ...
+
+    @property
+    def first_diameter(self) -> float:
+        ...
+
+    @property
+    def normal_offset(self) -> float:
+        ...
+
+    @property
+    def level_bias(self) -> float:
+        ...
+
+    @property
+    def density(self) -> float:
+        ...
+
+    @property
+    def correlation(self) -> float:
+        ...
+
+    @property
+    def cut_off(self) -> float:
+        ...
+
+    @property
+    def own_surface(self) -> bool:
+        ...
+
+    @property
+    def start(self) -> str:
+        ...
+
+    @property
+    def start_height(self) -> float:
+        ...
+
+    @property
+    def most_steps(self) -> int:
+        ...
+
+    @property
+    def step_growth(self) -> float:
+        ...
+
+    @property
+    def opacity_correction(self) -> bool:
+        ...
 class SphericalHarmonicLobes:
     """Diffuse and glossy lobes in spherical harmonics, against the caches' radiance."""
     description: ClassVar[dict[str, Any]]
@@ -4016,6 +4095,10 @@ def shadow(technique: ShadowMap, scene: Scene, gbuffer: GBuffer, maps: ShadowMap
 def shadow_lights(technique: TracedVisibility | ImperfectShadowMaps | Unshadowed, lights: VirtualLights, points: SurfacePoints, scene: Scene) -> LightShadows:
     """
     What virtual lights see.
+    """
+def shadow_links(technique: BodyCones, caches: LightCaches, links: CacheLinks, light: NodeLight, sites: CacheSites, surfels: ClusteredSurfels, pyramids: collections.abc.Sequence[Pyramid], scene: Scene, reflect: bool=True) -> Counts:
+    """
+    Takes from caches' light, in place, what bodies block, and adds what they send where `reflect`; pyramids: of the bodies.
     """
 def shadow_maps(technique: ShadowMap, scene: Scene) -> ShadowMaps:
     """

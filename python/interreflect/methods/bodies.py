@@ -10,7 +10,7 @@ from interreflect import _core
 from interreflect.methods.prepared import View
 from interreflect.profile import StageClock
 from interreflect.scenes.scene import WORLD, Scene
-from interreflect.stages import body_domain, move_voxels, voxelize
+from interreflect.stages import body_domain, light_voxels, move_voxels, prefilter, voxelize
 
 
 def voxelize_bodies(technique: Any, scene: Scene, voxel_size: float) -> dict[str, _core.VoxelGrid]:
@@ -40,3 +40,16 @@ def parts_of(technique: Any, view: View, domain: _core.Domain, note: StageClock)
     if still is None or still.domain != domain:
         still = state["still"] = note(voxelize(technique, view.scene, domain, body=WORLD))
     return [still, *(note(move_voxels(voxels, view.scene, body)) for body, voxels in state["bodies"].items())]
+
+
+def lit_bodies(technique: _core.BodyCones, view: View, note: StageClock) -> list[_core.Pyramid]:
+    """Of every body a hierarchy where it is in this frame, with what it reflects of direct light."""
+    scene, state = view.scene, view.state
+    if "bodies" not in state:
+        lower, upper = np.asarray(scene.bounds)
+        state["bodies"] = voxelize_bodies(_core.SurfaceSampling(), scene, float((upper - lower).max()) / technique.resolution)
+    made = []
+    for body, voxels in state["bodies"].items():
+        lit = light_voxels(_core.TracedLighting(both_sides=True), scene, move_voxels(voxels, scene, body), view.seed)
+        made.append(note(prefilter(_core.OctantCoverage(), lit)))
+    return made

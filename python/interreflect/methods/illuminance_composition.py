@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from interreflect import _core
 from interreflect.frame import Image
 from interreflect.methods import composition_pieces
+from interreflect.methods.bodies import lit_bodies
 from interreflect.methods.composition_presets import PRESETS
 from interreflect.methods.knobs import knob, stage
 from interreflect.methods.method import Method, method
@@ -64,7 +65,8 @@ class IlluminanceComposition(Method):
 
     Surfels on the still surface are lit like pixels. A tree sums up what patches of them send on, and each cache, linked to a fixed number
     of patches that it sees, adds that up in spherical harmonics. Pixels interpolate between caches. Surfels, tree, caches and links are
-    built once; a moved light costs a frame, a moved body receives light and sends none on. More bounces light the surfels by the caches.
+    built once; a moved light costs a frame. A moved body receives light, and with `shadow_links=BodyCones()` blocks that of links and sends
+    its own. More bounces light the surfels by the caches.
     """
 
     bounces: int | None = knob(
@@ -90,6 +92,7 @@ class IlluminanceComposition(Method):
     cluster_surfels: Any = stage(default=_core.Agglomerative())
     place_caches: Any = stage(default=_core.LightMap())
     link: Any = stage(default=_core.ShLinks())
+    shadow_links: Any = stage(default=None, optional=True)
     evaluate: Any = stage(default=_core.SphericalHarmonicLobes())
     shade: Any = stage(default=_core.Exact())
     shadow: Any = stage(default=_core.TracedShadows())
@@ -105,11 +108,24 @@ class IlluminanceComposition(Method):
             raise ValueError("IlluminanceComposition.shadow: VoxelCones needs voxels, and surfels have none")
         if self.lit_caches == "read" and self.bounces is None:
             raise ValueError("IlluminanceComposition.lit_caches: 'read' needs a number of bounces")
+        if self.shadow_links is not None:
+            self._check_shadow_links()
         if self.chrominance_bands > self.link.bands:
             raise ValueError(
                 f"IlluminanceComposition.evaluate.chrominance_bands must lie in [0, {self.link.bands}], the bands of the links, "
                 f"got {self.chrominance_bands}"
             )
+
+    def _check_shadow_links(self) -> None:
+        for name, technique, why in (
+            ("link", _core.AllSurfels, "whose rays meet bodies themselves"),
+            ("place_caches", _core.PixelCaches, "whose links' rays meet bodies themselves"),
+            ("evaluate", _core.DirectLinks, "which takes no light of caches, where bodies' shadows are"),
+        ):
+            if isinstance(getattr(self, name), technique):
+                raise ValueError(f"IlluminanceComposition.shadow_links does not go with {technique.__name__}, {why}")
+        if isinstance(self.link, _core.ShLinks) and self.link.bands < 2:
+            raise ValueError("IlluminanceComposition.shadow_links: links of one band do not tell their direction")
 
     @property
     def chrominance_bands(self) -> int:
@@ -148,7 +164,7 @@ class IlluminanceComposition(Method):
         scene, seed = view.scene, view.seed
         with profile.stage("gbuffer") as note:
             gbuffer = note(trace_gbuffer(scene, view.camera, view.size, self.shade))
-        view = self.with_emission(view, profile)
+        view = self.with_emission(self.with_bodies(view, profile), profile)
         at_pixels, at_surfels = self.linked(view, gbuffer, profile)
         if self.lit_caches == "read":
             with profile.stage("used_caches"):
@@ -178,6 +194,14 @@ class IlluminanceComposition(Method):
         with profile.stage("surfel_pixels") as note:
             return replace(view, state={**view.state, "pixels": note(surfel_pixels(view.state["surfels"], view.scene))})
 
+    def with_bodies(self, view: View, profile: Profile) -> View:
+        """The frame with the bodies' voxels, lit where they are; none without `shadow_links`."""
+        pyramids: list[_core.Pyramid] = []
+        if self.shadow_links is not None:
+            with profile.stage("light_bodies") as note:
+                pyramids = lit_bodies(self.shadow_links, view, note)
+        return replace(view, state={**view.state, "body_pyramids": pyramids})
+
     def linked(self, view: View, gbuffer: _core.GBuffer, profile: Profile) -> tuple[Caches, Caches]:
         """Caches and their links for pixels and for surfels: the same, built once, or where they stand at pixels anew in every frame."""
         if "sites" in view.state:
@@ -199,9 +223,10 @@ class IlluminanceComposition(Method):
         if self.emitters == "rays":
             return None
         sent = np.asarray(view.state["pixels"].emission)
-        to_surfels = self.pass_on(view, sent, at_surfels, 0, profile)
+        # What bodies reflect is no light of emitters alone: it is added once, to what the lit surfels send.
+        to_surfels = self.pass_on(view, sent, at_surfels, 0, profile, reflect=False)
         same = at_surfels.sites is at_pixels.sites
-        return to_surfels if same else self.pass_on(view, sent, at_pixels, 0, profile), to_surfels
+        return to_surfels if same else self.pass_on(view, sent, at_pixels, 0, profile, reflect=False), to_surfels
 
     def shadow_maps(self, view: View, profile: Profile) -> _core.ShadowMaps | None:
         """Those that pixels and surfels share."""
@@ -244,8 +269,8 @@ class IlluminanceComposition(Method):
             return last, last
         return self.pass_on(view, sent, at_pixels, 0, profile), last
 
-    def pass_on(self, view: View, sent: NDArray[np.float32], to: Caches, bounce: int, profile: Profile) -> CacheLight:
-        """From the surfels to caches."""
+    def pass_on(self, view: View, sent: NDArray[np.float32], to: Caches, bounce: int, profile: Profile, reflect: bool = True) -> CacheLight:
+        """From the surfels to caches. reflect: whether what bodies reflect of direct light goes with it."""
         surfels = view.state["surfels"]
         with profile.stage("pull") as note:
             patches = note(pull(surfels, sent, getattr(self.link, "pull", "flux") == "radiosity", self.patch_light != "floats"))
@@ -257,12 +282,14 @@ class IlluminanceComposition(Method):
             return CacheLight(None, patches, links)
         with profile.stage("light_caches") as note:
             seed = (view.seed + bounce) % 2**32
-            window = getattr(self.evaluate, "window", "none")
             caches = note(
-                light_caches(
-                    self.link, links, to.sites, surfels, patches, view.scene, self.chrominance_bands, seed, window, to.used
-                )
+                light_caches(self.link, links, to.sites, surfels, patches, view.scene, self.chrominance_bands, seed, used=to.used)
             )  # fmt: skip
+        if view.state["body_pyramids"] and links is not None:
+            with profile.stage("shadow_links") as note:
+                met = (links, patches, to.sites, surfels, view.state["body_pyramids"], view.scene.core)
+                note.counts |= _core.shadow_links(self.shadow_links, caches, *met, reflect=reflect).asdict()
+        _core.window_caches(caches, getattr(self.evaluate, "window", "none"))
         return CacheLight(caches, patches, links)
 
     def gathered(self, light: CacheLight, caches: Caches, gbuffer: _core.GBuffer, view: View) -> _core.SurfelLight:
