@@ -116,7 +116,8 @@ def test_records_of_cells_that_share_have_the_time_of_a_whole_precomputation(tmp
     table = ir.run(study, tmp_path).table
     assert (table.status == "ok").all()
     first, *others = table.precompute_milliseconds
-    assert all(0.5 * first < other < 2 * first for other in others), table.precompute_milliseconds
+    # What is shared counts with the time that it took once; what a cell does by itself may take any time.
+    assert all(other > 0.5 * first for other in others), table.precompute_milliseconds
 
 
 def test_what_is_precomputed_does_not_depend_on_where_bodies_are():
