@@ -13,6 +13,7 @@ from interreflect.frame import Image
 from interreflect.methods.knobs import knob
 from interreflect.methods.method import method
 from interreflect.methods.prepared import View
+from interreflect.methods.suns import suns_of
 from interreflect.methods.virtual_area_lights import VirtualAreaLights
 from interreflect.methods.virtual_light_presets import PRESETS
 from interreflect.profile import Profile
@@ -36,7 +37,7 @@ class LightPicture(VirtualAreaLights):
 
     def compose(self, view: View, profile: Profile) -> tuple[Image, Image, Any]:
         with profile.stage("reflective_shadow_maps") as note:
-            maps = note(light_maps(view.scene, self.map_size, self.emitter_views, self.suns(view)))
+            maps = note(light_maps(view.scene, self.map_size, self.emitter_views, suns_of(view, self.environment_lights)))
         lights = sample_lights(self.sample_lights, maps, view.seed)
         with profile.stage("picture") as note:
             if self.cluster_lights is not None:

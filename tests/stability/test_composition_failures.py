@@ -53,8 +53,9 @@ def test_more_surfels_with_as_many_links_lose_far_light():
 
 
 def test_texels_that_see_backs_spoil_the_seam_of_a_sunk_box():
-    row = ROWS["texels behind other geometry"]
-    assert row.read(METHOD, 1.0).error > max(row.tolerance, 1.5 * row.read(METHOD, 0.5).error)
+    """Texels wide enough for a seam that is seen: of a map of 64 it is .099, just below what is called a failure."""
+    row, method = ROWS["texels behind other geometry"], METHOD.replace({"place_caches.texels": 32})
+    assert row.read(method, 1.0).error > max(row.tolerance, 1.5 * row.read(method, 0.5).error)
 
 
 @pytest.mark.long

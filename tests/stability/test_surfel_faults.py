@@ -78,8 +78,8 @@ def radiosity_for_flux(stage, surfels, radiance, *rest):
     return light
 
 
-def first_band_alone(stage, *arguments):
-    caches = stage(*arguments)
+def first_band_alone(stage, *arguments, **keywords):
+    caches = stage(*arguments, **keywords)
     coefficients = np.array(caches.coefficients)
     bands = coefficients.reshape(len(coefficients), 3, -1)
     bands[:, :, 1:] = 0
