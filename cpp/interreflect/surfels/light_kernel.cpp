@@ -63,42 +63,64 @@ void StoreCache(LightCaches& caches, std::size_t cache, const float* red, const 
     }
 }
 
-/// `count` vectors of coefficients for each colour. Sums of even and odd links, as an addition waits for the one before.
+/// Sums of a colour each, `count` vectors of coefficients. Apart from arrays with an index that is found at run time, which g++
+/// leaves in memory: a store and a load then lie between two additions.
+template <int count>
+struct LinkSums {
+    Vector red[count], green[count], blue[count];
+
+    HWY_INLINE LinkSums() {
+        for (int v = 0; v < count; ++v) red[v] = green[v] = blue[v] = hn::Zero(Tag());
+    }
+    /// The coefficients of one link, half floats, times its node's light.
+    HWY_INLINE void add(const hwy::float16_t* coefficients, const vec3& sent) {
+        const Tag d;
+        const hn::Rebind<hwy::float16_t, Tag> half;
+        const Vector r = hn::Set(d, sent.x), g = hn::Set(d, sent.y), b = hn::Set(d, sent.z);
+        for (int v = 0; v < count; ++v) {
+            const Vector c = hn::PromoteTo(d, hn::LoadU(half, coefficients + static_cast<std::size_t>(v) * hn::MaxLanes(d)));
+            red[v] = hn::MulAdd(c, r, red[v]), green[v] = hn::MulAdd(c, g, green[v]), blue[v] = hn::MulAdd(c, b, blue[v]);
+        }
+    }
+    HWY_INLINE void add(const LinkSums& other) {
+        for (int v = 0; v < count; ++v) {
+            red[v] = hn::Add(red[v], other.red[v]), green[v] = hn::Add(green[v], other.green[v]);
+            blue[v] = hn::Add(blue[v], other.blue[v]);
+        }
+    }
+    HWY_INLINE void store(float unit, float* colours) const {
+        const Tag d;
+        const Vector by = hn::Set(d, unit);
+        for (int v = 0; v < count; ++v) {
+            float* const to = colours + static_cast<std::size_t>(v) * hn::MaxLanes(d);
+            hn::Store(hn::Mul(red[v], by), d, to), hn::Store(hn::Mul(green[v], by), d, to + 64);
+            hn::Store(hn::Mul(blue[v], by), d, to + 128);
+        }
+    }
+};
+
+/// Even and odd links apart, as an addition waits for the one before.
+template <int count, bool packed>
+void sum_links(const CacheLinks& links, const NodeLight& light, std::size_t cache, float* colours) {
+    const auto each = static_cast<std::size_t>(links.bands * links.bands), all = static_cast<std::size_t>(links.per_cache);
+    const auto* coefficients = reinterpret_cast<const hwy::float16_t*>(links.coefficients.data()) + cache * all * each;
+    const std::uint32_t* const node = links.node.data() + cache * all;
+    const vec3* const value = light.value.data();
+    const auto sent = [&](std::size_t k) { return packed ? light.at(node[k]) : value[node[k]]; };
+    LinkSums<count> even, odd;
+    std::size_t k = 0;
+    for (; k + 2 <= all; k += 2) {
+        even.add(coefficients + k * each, sent(k));
+        odd.add(coefficients + (k + 1) * each, sent(k + 1));
+    }
+    if (k < all) even.add(coefficients + k * each, sent(k));
+    even.add(odd);
+    even.store(links.unit, colours);
+}
+
 template <int count>
 void sum_links(const CacheLinks& links, const NodeLight& light, std::size_t cache, float* colours) {
-    const Tag d;
-    const hn::Rebind<hwy::float16_t, Tag> half;
-    constexpr std::size_t lanes = hn::MaxLanes(d);
-    constexpr int apart = count <= 2 ? 2 : 1;
-    const std::size_t each = static_cast<std::size_t>(links.bands * links.bands);
-    const std::size_t first = cache * static_cast<std::size_t>(links.per_cache);
-    const auto* coefficients = reinterpret_cast<const hwy::float16_t*>(links.coefficients.data()) + first * each;
-    Vector sum[apart][3][count];
-    for (auto& one : sum)
-        for (auto& colour : one)
-            for (Vector& part : colour) part = hn::Zero(d);
-    const auto add = [&](std::size_t k, int to) HWY_ATTR {
-        const vec3 sent = light.at(links.node[first + k]);
-        const Vector red = hn::Set(d, sent.x), green = hn::Set(d, sent.y), blue = hn::Set(d, sent.z);
-        for (int v = 0; v < count; ++v) {
-            const Vector c = hn::PromoteTo(d, hn::LoadU(half, coefficients + k * each + static_cast<std::size_t>(v) * lanes));
-            sum[to][0][v] = hn::MulAdd(c, red, sum[to][0][v]);
-            sum[to][1][v] = hn::MulAdd(c, green, sum[to][1][v]);
-            sum[to][2][v] = hn::MulAdd(c, blue, sum[to][2][v]);
-        }
-    };
-    const auto all = static_cast<std::size_t>(links.per_cache);
-    std::size_t k = 0;
-    for (; k + apart <= all; k += apart)
-        for (int to = 0; to < apart; ++to) add(k + static_cast<std::size_t>(to), to);
-    for (; k < all; ++k) add(k, 0);
-    const Vector unit = hn::Set(d, links.unit);
-    for (int colour = 0; colour < 3; ++colour)
-        for (int v = 0; v < count; ++v) {
-            Vector whole = sum[0][colour][v];
-            if (apart == 2) whole = hn::Add(whole, sum[apart - 1][colour][v]);
-            hn::Store(hn::Mul(whole, unit), d, colours + 64 * colour + static_cast<std::size_t>(v) * lanes);
-        }
+    (light.is_packed() ? sum_links<count, true> : sum_links<count, false>)(links, light, cache, colours);
 }
 
 void ProjectedCaches(const CacheLinks& links, const NodeLight& light, std::size_t begin, std::size_t end, LightCaches& caches) {
