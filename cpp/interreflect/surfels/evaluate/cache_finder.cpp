@@ -13,7 +13,8 @@
 #include "math/lanes-inl.h"
 
 // Roofline: of each pixel position, geometric normal, triangle and instance, 32 bytes, are read once. A pixel's triangle takes
-// four multiply-adds of four lanes, which texels or cells lie about it some 40 or 100 operations of one lane, and 4 or 8 gathers.
+// four multiply-adds of four lanes, which texels or cells lie about it some 40 or 100 operations of one lane; a vector's few
+// distinct cells take 4 or 8 loads each.
 HWY_BEFORE_NAMESPACE();
 namespace interreflect {
 namespace HWY_NAMESPACE {
@@ -46,12 +47,19 @@ struct Slots {
     }
 };
 
-/// What is listed at `index` where `at` holds; no_cache elsewhere.
-template <class M>
-HWY_INLINE Index listed(const Buffer<std::uint32_t>& list, M at, Index index) {
+/// Calls take(lanes, number) for every number that some lane of `at` has. Pixels side by side lie in few cells: what a cell lists
+/// is read once for all of them, where a gather reads it for each.
+template <class M, class Take>
+HWY_INLINE void for_each_distinct(M at, Index number, const Take& take) {
     const Whole di;
-    const Index found = hn::GatherIndex(di, reinterpret_cast<const std::int32_t*>(list.data()), hn::IfThenElseZero(at, index));
-    return hn::IfThenElse(at, found, hn::Set(di, -1));
+    alignas(64) std::int32_t numbers[lanes];
+    hn::Store(number, di, numbers);
+    while (!hn::AllFalse(di, at)) {
+        const std::int32_t one = numbers[hn::FindKnownFirstTrue(di, at)];
+        const auto same = hn::And(at, hn::Eq(number, hn::Set(di, one)));
+        take(same, one);
+        at = hn::AndNot(same, at);
+    }
 }
 
 /// A cache that exists, and its weight; else 0.
@@ -73,13 +81,20 @@ HWY_INLINE Slots in_map(const LightMapSites& map, LaneMask mapped, Vector u, Vec
     u = hn::Sub(u, half), v = hn::Sub(v, half);
     const Vector left = hn::Floor(u), top = hn::Floor(v), across = hn::Sub(u, left), down = hn::Sub(v, top);
     const Index size = hn::Set(di, map.size), x0 = hn::ConvertTo(di, left), y0 = hn::ConvertTo(di, top);
-    const auto within = [&](Index i) HWY_ATTR { return hn::And(hn::Gt(i, hn::Set(di, -1)), hn::Lt(i, size)); };
+    // From the corner (-1, -1) on: look-ups reach half a texel beyond the map.
+    const Index one = hn::Set(di, 1), square = hn::Add(hn::Mul(hn::Add(y0, one), hn::Add(size, one)), hn::Add(x0, one));
+    Index texel[4] = {hn::Set(di, -1), hn::Set(di, -1), hn::Set(di, -1), hn::Set(di, -1)};
+    for_each_distinct(hn::RebindMask(di, mapped), square, [&](auto same, std::int32_t number) HWY_ATTR {
+        for (int k = 0; k < 4; ++k) {
+            const int x = number % (map.size + 1) - 1 + (k & 1), y = number / (map.size + 1) - 1 + (k >> 1);
+            if (x < 0 || y < 0 || x >= map.size || y >= map.size) continue;
+            const std::uint32_t cache =
+                map.cache[static_cast<std::size_t>(y) * static_cast<std::size_t>(map.size) + static_cast<std::size_t>(x)];
+            texel[k] = hn::IfThenElse(same, hn::Set(di, static_cast<std::int32_t>(cache)), texel[k]);
+        }
+    });
     Slots slots;
-    for (int k = 0; k < 4; ++k) {
-        const Index x = hn::Add(x0, hn::Set(di, k & 1)), y = hn::Add(y0, hn::Set(di, k >> 1));
-        const auto there = hn::And(hn::And(within(x), within(y)), hn::RebindMask(di, mapped));
-        add(slots, k, listed(map.cache, there, hn::Add(hn::Mul(y, size), x)), hn::Mul(part(across, k & 1), part(down, k >> 1)));
-    }
+    for (int k = 0; k < 4; ++k) add(slots, k, texel[k], hn::Mul(part(across, k & 1), part(down, k >> 1)));
     return slots;
 }
 
@@ -106,29 +121,45 @@ HWY_INLINE Slots in_grid(const GridSites& grid, LaneMask hit, const Vec3& positi
     const vec3 &lower = grid.box.lower, &upper = grid.box.upper;
     const Between x(position.x, lower.x, upper.x, grid.size.x), y(position.y, lower.y, upper.y, grid.size.y),
         z(position.z, lower.z, upper.z, grid.size.z);
-    Slots slots;
-    Vector most = hn::Set(d, -1.0f);
-    Index nearest = hn::Zero(di);
-    for (int k = 0; k < 8; ++k) {
+    const Index lowest =
+        hn::Add(hn::Mul(hn::Add(hn::Mul(z.low, hn::Set(di, grid.size.y)), y.low), hn::Set(di, grid.size.x)), x.low);
+    int corners = 0, place[NearCaches::slots];  // cells from the lowest one on
+    Vector weight[NearCaches::slots];
+    for (int k = 0; k < NearCaches::slots; ++k) {
         const int i = k & 1, j = (k >> 1) & 1, l = k >> 2;
         if (i >= grid.size.x || j >= grid.size.y || l >= grid.size.z) continue;
-        const Index across = hn::Add(x.low, hn::Set(di, i)), up = hn::Add(y.low, hn::Set(di, j)),
-                    along = hn::Add(z.low, hn::Set(di, l));
-        const Index cell =
-            hn::Add(hn::Mul(hn::Add(hn::Mul(along, hn::Set(di, grid.size.y)), up), hn::Set(di, grid.size.x)), across);
-        const Vector weight = hn::Mul(hn::Mul(part(x.share, i), part(y.share, j)), part(z.share, l));
-        const auto more = hn::Gt(weight, most);
-        most = hn::Max(most, weight), nearest = hn::IfThenElse(hn::RebindMask(di, more), cell, nearest);
-        add(slots, k, listed(grid.cache, hn::RebindMask(di, hit), cell), weight);
+        place[corners] = (l * grid.size.y + j) * grid.size.x + i;
+        weight[corners++] = hn::Mul(hn::Mul(part(x.share, i), part(y.share, j)), part(z.share, l));
     }
+    const auto within = hn::RebindMask(di, hit);
+    Index cache[NearCaches::slots];
+    for (int k = 0; k < corners; ++k) cache[k] = hn::Set(di, -1);
+    for_each_distinct(within, lowest, [&](auto same, std::int32_t first) HWY_ATTR {
+        for (int k = 0; k < corners; ++k)
+            cache[k] = hn::IfThenElse(
+                same, hn::Set(di, static_cast<std::int32_t>(grid.cache[static_cast<std::size_t>(first + place[k])])), cache[k]);
+    });
+    Slots slots;
+    for (int k = 0; k < corners; ++k) add(slots, k, cache[k], weight[k]);
     const auto none = hn::And(hn::Eq(slots.sum, hn::Zero(d)), hit);
-    if (!hn::AllFalse(d, none)) {
-        Slots instead;
-        add(instead, 0, listed(grid.nearest, hn::RebindMask(di, none), nearest), hn::Set(d, 1.0f));
-        slots.cache[0] = hn::IfThenElse(hn::RebindMask(di, none), instead.cache[0], slots.cache[0]);
-        slots.weight[0] = hn::IfThenElse(none, instead.weight[0], slots.weight[0]);
-        slots.sum = hn::IfThenElse(none, instead.sum, slots.sum);
+    if (hn::AllFalse(d, none)) return slots;
+    Vector most = weight[0];
+    Index nearest = lowest;
+    for (int k = 1; k < corners; ++k) {
+        const auto more = hn::Gt(weight[k], most);
+        most = hn::Max(most, weight[k]);
+        nearest = hn::IfThenElse(hn::RebindMask(di, more), hn::Add(lowest, hn::Set(di, place[k])), nearest);
     }
+    const auto alone = hn::RebindMask(di, none);
+    Slots instead;
+    for_each_distinct(alone, nearest, [&](auto same, std::int32_t cell) HWY_ATTR {
+        const auto stand_in = static_cast<std::int32_t>(grid.nearest[static_cast<std::size_t>(cell)]);
+        cache[0] = hn::IfThenElse(same, hn::Set(di, stand_in), cache[0]);
+    });
+    add(instead, 0, hn::IfThenElse(alone, cache[0], hn::Set(di, -1)), hn::Set(d, 1.0f));
+    slots.cache[0] = hn::IfThenElse(alone, instead.cache[0], slots.cache[0]);
+    slots.weight[0] = hn::IfThenElse(none, instead.weight[0], slots.weight[0]);
+    slots.sum = hn::IfThenElse(none, instead.sum, slots.sum);
     return slots;
 }
 

@@ -38,6 +38,22 @@ struct LobeWeights {
             scale[l] = band_scale(l, exponent);
             if (!hn::AllTrue(d, hn::Eq(scale[l], hn::Zero(d)))) count = (l + 1) * (l + 1);
         }
+        project<bands>(axis, scale);
+    }
+    /// Of odd bands the cosine has the second one alone.
+    template <int bands>
+    HWY_INLINE void set_cosine(const Vec3& axis) {
+        constexpr int last = bands > 2 && bands % 2 == 0 ? bands - 1 : bands;
+        Vector scale[last];
+        for (int l = 0; l < last; ++l) scale[l] = hn::Set(Tag(), lobe_scale(l, 1.0f));
+        count = last * last;
+        project<last>(axis, scale);
+    }
+
+  private:
+    template <int bands>
+    HWY_INLINE void project(const Vec3& axis, const Vector* scale) {
+        const Tag d;
         const auto& norms = detail::harmonic_norms();
         visit_harmonics<bands>(axis, [&](int l, int m, Vector p, Vector cosine, Vector sine) HWY_ATTR {
             const float norm = norms[static_cast<std::size_t>(l)][static_cast<std::size_t>(m)];
@@ -47,7 +63,6 @@ struct LobeWeights {
         });
     }
 
-  private:
     /// lobe_scale
     static HWY_INLINE Vector band_scale(int l, Vector n) {
         const Tag d;
@@ -148,15 +163,18 @@ HWY_INLINE Vec3 colour_of(const Vec3& mean, bool ycocg) {
     return {hn::Max(colour.x, zero), hn::Max(colour.y, zero), hn::Max(colour.z, zero)};
 }
 
-void SumLobes(const LightCaches& caches, const NearCaches& near, int count, Lobes& lobes) {
+/// set_weights(weights, bands, axes, at): those of a vector of lobes; bands: as an integral constant.
+template <class SetWeights>
+HWY_INLINE void sum_over(const LightCaches& caches, const NearCaches& near, int count, Lobes& lobes,
+                         const SetWeights& set_weights) {
     const Tag d;
     LobeWeights weights;
     alignas(64) float coefficients[most_coefficients + 2 * lanes];
     for (int at = 0; at < count; at += static_cast<int>(lanes)) {
-        const Vec3 axis{hn::Load(d, lobes.axis[0] + at), hn::Load(d, lobes.axis[1] + at), hn::Load(d, lobes.axis[2] + at)};
-        const Vector exponent = hn::Load(d, lobes.exponent + at);
+        Vec3 axis;
+        hn::LoadInterleaved3(d, &lobes.axis[at].x, axis.x, axis.y, axis.z);
         [&]<int... less>(std::integer_sequence<int, less...>) {
-            ((caches.bands == less + 1 ? weights.set<less + 1>(axis, exponent) : void()), ...);
+            ((caches.bands == less + 1 ? set_weights(weights, std::integral_constant<int, less + 1>(), axis, at) : void()), ...);
         }
         (std::make_integer_sequence<int, most_bands>());
         Vec3 mean{hn::Zero(d), hn::Zero(d), hn::Zero(d)};
@@ -168,6 +186,16 @@ void SumLobes(const LightCaches& caches, const NearCaches& near, int count, Lobe
     }
 }
 
+void SumLobes(const LightCaches& caches, const NearCaches& near, int count, Lobes& lobes) {
+    sum_over(caches, near, count, lobes, [&](LobeWeights& weights, auto bands, const Vec3& axis, int at) HWY_ATTR {
+        weights.set<bands()>(axis, hn::Load(Tag(), lobes.exponent + at));
+    });
+}
+void SumCosines(const LightCaches& caches, const NearCaches& near, int count, Lobes& lobes) {
+    sum_over(caches, near, count, lobes,
+             [](LobeWeights& weights, auto bands, const Vec3& axis, int) HWY_ATTR { weights.set_cosine<bands()>(axis); });
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace interreflect
 HWY_AFTER_NAMESPACE();
@@ -175,9 +203,13 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace interreflect {
 HWY_EXPORT(SumLobes);
+HWY_EXPORT(SumCosines);
 
 void sum_lobes(const LightCaches& caches, const NearCaches& near, int count, Lobes& lobes) {
     HWY_DYNAMIC_DISPATCH(SumLobes)(caches, near, count, lobes);
+}
+void sum_cosines(const LightCaches& caches, const NearCaches& near, int count, Lobes& lobes) {
+    HWY_DYNAMIC_DISPATCH(SumCosines)(caches, near, count, lobes);
 }
 }  // namespace interreflect
 #endif

@@ -34,20 +34,14 @@ class Runs {
     Counts evaluate(std::size_t first, int count) {
         finder_.find(first, count, near_);
         near_.count(count, used_);
-        for (int i = 0; i < count; ++i) {
-            const vec3& normal = g_.normal[first + static_cast<std::size_t>(i)];
-            for (int k = 0; k < 3; ++k) lobes_.axis[k][i] = normal[k];
-            lobes_.exponent[i] = 1.0f;
-        }
-        sum_lobes(caches_, near_, count, lobes_);
+        std::copy_n(g_.normal.data() + first, count, lobes_.axis);
+        sum_cosines(caches_, near_, count, lobes_);
+        vec3* const irradiance = light_.gathered.irradiance.data() + first;
+        for (int i = 0; i < count; ++i) irradiance[i] = pi * lobes_.mean[i];
+        std::fill_n(light_.glossy.radiance.data() + first, count, vec3(0));
         std::uint64_t hits = 0, covered = 0, evaluations = 0;
-        for (int i = 0; i < count; ++i) {
-            const std::size_t pixel = first + static_cast<std::size_t>(i);
-            const bool hit = g_.hit(pixel);
-            light_.gathered.irradiance[pixel] = hit ? pi * lobes_.mean[i] : vec3(0);
-            light_.glossy.radiance[pixel] = vec3(0);
-            hits += hit ? 1 : 0, covered += used_[i] > 0 ? 1 : 0, evaluations += static_cast<std::uint64_t>(used_[i]);
-        }
+        for (int i = 0; i < count; ++i) hits += g_.hit(first + static_cast<std::size_t>(i)) ? 1 : 0;
+        for (int i = 0; i < count; ++i) covered += used_[i] > 0 ? 1 : 0, evaluations += static_cast<std::uint64_t>(used_[i]);
         Counts counts;
         counts.cache_evaluations = evaluations, counts.covered_pixels = covered, counts.uncovered_pixels = hits - covered;
         reflect(first, count);
@@ -69,7 +63,7 @@ class Runs {
         if (reflections_.count == 0 || g_.seen_head_on) return;
         find_lobes(tables_, g_.camera.position, false, reflections_);
         for (int i = 0; i < reflections_.count; ++i) {
-            for (int k = 0; k < 3; ++k) lobes_.axis[k][i] = reflections_.direction[k][i];
+            lobes_.axis[i] = reflections_.cone(i);
             lobes_.exponent[i] = exponent_of(reflections_.half_angle[i]);
         }
         sum_lobes(caches_, near_, reflections_.count, lobes_);
