@@ -44,7 +44,7 @@ class Runs {
         for (int i = 0; i < count; ++i) covered += used_[i] > 0 ? 1 : 0, evaluations += static_cast<std::uint64_t>(used_[i]);
         Counts counts;
         counts.cache_evaluations = evaluations, counts.covered_pixels = covered, counts.uncovered_pixels = hits - covered;
-        reflect(first, count);
+        if (!tables_.empty()) reflect(first, count);
         return counts;
     }
 

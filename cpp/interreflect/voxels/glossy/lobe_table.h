@@ -41,6 +41,8 @@ class LobeTables {
         return first_[static_cast<std::size_t>(scene_->materials[scene_->material_of(gbuffer_->triangle[pixel])].lobe)];
     }
     const LobeCone* entries() const { return entries_.data(); }
+    /// No surface is glossy.
+    bool empty() const { return entries_.empty(); }
 
   private:
     const GBuffer* gbuffer_;
