@@ -47,7 +47,7 @@ GBuffer pixels(int count, std::uint32_t seed) {
 }
 
 /// A map of 8 x 8 texels over z = 0 and a grid of 3 x 1 x 4 cells, in which every third cache is missing.
-CacheSites sites() {
+CacheSites sites(int levels = 1) {
     CacheSites s;
     s.map.size = 8;
     s.map.cache = Buffer<std::uint32_t>(64);
@@ -57,10 +57,11 @@ CacheSites sites() {
     s.map.planes[0] = {{vec4(8, 0, 0, 0), vec4(0, 8, 0, 0), vec4(0, 0, 1, 0), vec4(0)}};
     std::uint32_t next = 0;
     for (std::size_t i = 0; i < 64; ++i) s.map.cache[i] = i % 3 == 0 || i < 24 ? no_cache : next++;
-    s.grid.size = {3, 1, 4}, s.grid.box = {vec3(0), vec3(1)};
-    s.grid.cache = Buffer<std::uint32_t>(12), s.grid.nearest = Buffer<std::uint32_t>(12);
-    for (std::size_t i = 0; i < 12; ++i) s.grid.cache[i] = i % 3 == 1 || i < 5 ? no_cache : next++;
-    for (std::size_t i = 0; i < 12; ++i) s.grid.nearest[i] = s.grid.cache[i] == no_cache ? next - 1 : s.grid.cache[i];
+    s.grid.size = {3, 1, 4}, s.grid.box = {vec3(0), vec3(1)}, s.grid.levels = levels, s.grid.reach = 0.3f;
+    const std::size_t cells = s.grid.first_of(levels);
+    s.grid.cache = Buffer<std::uint32_t>(cells), s.grid.nearest = Buffer<std::uint32_t>(cells);
+    for (std::size_t i = 0; i < cells; ++i) s.grid.cache[i] = i % 3 == 1 || i < 5 ? no_cache : next++;
+    for (std::size_t i = 0; i < cells; ++i) s.grid.nearest[i] = s.grid.cache[i] == no_cache ? next - 1 : s.grid.cache[i];
     s.position = Buffer<vec3>(next);
     return s;
 }
@@ -72,6 +73,38 @@ Weights normalised(Weights weights) {
     for (const auto& [cache, weight] : weights) sum += weight;
     for (auto& [cache, weight] : weights) weight /= sum;
     return weights;
+}
+
+/// What a level is given at a distance from the camera: all within its reach, fading out over its last fifth.
+float share_of_level(const GridSites& grid, int level, float distance) {
+    const auto beyond = [&](int l) {
+        if (l == 0) return 1.0f;
+        if (l == grid.levels) return 0.0f;
+        const float end = grid.reach * std::exp2(static_cast<float>(l - 1));
+        return std::clamp((distance - 0.8f * end) / (0.2f * end), 0.0f, 1.0f);
+    };
+    return beyond(level) - beyond(level + 1);
+}
+
+/// Trilinear in a level, else its stand-in.
+Weights near_in_level(const GridSites& grid, int level, const vec3& p) {
+    Weights found;
+    const ivec3 cells = grid.size_of(level);
+    const vec3 size(cells), at = glm::clamp(p * size - 0.5f, vec3(0), size - 1.0f);
+    const vec3 low = glm::min(glm::floor(at), glm::max(size - 2.0f, vec3(0))), share = at - low;
+    float most = -1;
+    std::uint32_t nearest = no_cache;
+    for (int k = 0; k < 8; ++k) {
+        const ivec3 step(k & 1, (k >> 1) & 1, k >> 2), cell = ivec3(low) + step;
+        if (cell.x >= cells.x || cell.y >= cells.y || cell.z >= cells.z) continue;
+        float weight = 1;
+        for (int axis = 0; axis < 3; ++axis) weight *= step[axis] != 0 ? share[axis] : 1 - share[axis];
+        const auto number = grid.first_of(level) + static_cast<std::size_t>((cell.z * cells.y + cell.y) * cells.x + cell.x);
+        if (weight > most) most = weight, nearest = grid.nearest[number];
+        if (grid.cache[number] != no_cache && weight > 0.0f) found[grid.cache[number]] += weight;
+    }
+    if (found.empty()) found[nearest] = 1;
+    return normalised(found);
 }
 
 /// Bilinear in the map, else trilinear in the grid, else its stand-in: the definition, a pixel at a time.
@@ -92,26 +125,15 @@ Weights near_one(const CacheSites& s, const GBuffer& g, std::size_t i) {
         }
         if (!found.empty()) return normalised(found);
     }
-    const vec3 size(s.grid.size), at = glm::clamp(p * size - 0.5f, vec3(0), size - 1.0f);
-    const vec3 low = glm::min(glm::floor(at), glm::max(size - 2.0f, vec3(0))), share = at - low;
-    float most = -1;
-    std::uint32_t nearest = no_cache;
-    for (int k = 0; k < 8; ++k) {
-        const ivec3 step(k & 1, (k >> 1) & 1, k >> 2), cell = ivec3(low) + step;
-        if (cell.x >= s.grid.size.x || cell.y >= s.grid.size.y || cell.z >= s.grid.size.z) continue;
-        float weight = 1;
-        for (int axis = 0; axis < 3; ++axis) weight *= step[axis] != 0 ? share[axis] : 1 - share[axis];
-        const auto number = static_cast<std::size_t>((cell.z * s.grid.size.y + cell.y) * s.grid.size.x + cell.x);
-        if (weight > most) most = weight, nearest = s.grid.nearest[number];
-        add(s.grid.cache[number], weight);
+    for (int level = 0; level < s.grid.levels; ++level) {
+        const float share = share_of_level(s.grid, level, g.seen_head_on ? 1e9f : glm::length(p - g.camera.position));
+        for (const auto& [cache, weight] : near_in_level(s.grid, level, p))
+            if (share > 0.0f) found[cache] += share * weight;
     }
-    if (found.empty()) add(nearest, 1);
     return normalised(found);
 }
 
-TEST(CacheFinder, VectorsOfPixelsFindWhatOnePixelFinds) {
-    const CacheSites s = sites();
-    const GBuffer g = pixels(1000, 1);
+void expect_what_one_pixel_finds(const CacheSites& s, const GBuffer& g) {
     const CacheFinder finder(s, g);
     NearCaches near;
     for (const int count : {256, 5, 1, 17})
@@ -119,13 +141,27 @@ TEST(CacheFinder, VectorsOfPixelsFindWhatOnePixelFinds) {
             finder.find(first, count, near);
             for (int k = 0; k < count; ++k) {
                 Weights found;
-                for (int slot = 0; slot < NearCaches::slots; ++slot)
+                for (int slot = 0; slot < near.slots; ++slot)
                     if (near.weight[slot][k] > 0.0f) found[near.cache[slot][k]] += near.weight[slot][k];
                 const Weights expected = near_one(s, g, first + static_cast<std::size_t>(k));
-                ASSERT_EQ(found.size(), expected.size());
-                for (const auto& [cache, weight] : expected) EXPECT_NEAR(found[cache], weight, 1e-5f);
+                for (const auto& [cache, weight] : expected) ASSERT_NEAR(found[cache], weight, 1e-5f);
+                float sum = 0;
+                for (const auto& [cache, weight] : found) sum += weight;
+                ASSERT_NEAR(sum, expected.empty() ? 0.0f : 1.0f, 1e-5f);
             }
         }
+}
+
+TEST(CacheFinder, VectorsOfPixelsFindWhatOnePixelFinds) { expect_what_one_pixel_finds(sites(), pixels(1000, 1)); }
+
+TEST(CacheFinder, VectorsOfPixelsFindWhatOnePixelFindsInLevels) {
+    for (const int levels : {2, 3}) {
+        GBuffer g = pixels(1000, 1);
+        g.camera.position = vec3(0.1f, 0.2f, 0.3f);
+        expect_what_one_pixel_finds(sites(levels), g);
+        g.seen_head_on = true;
+        expect_what_one_pixel_finds(sites(levels), g);
+    }
 }
 
 /// Random coefficients that differ between caches by powers of ten.
@@ -177,14 +213,13 @@ TEST(LobeSums, VectorsOfPixelsSeeWhatOnePixelSees) {
             }
             const auto lobes = std::make_unique<Lobes>();
             for (int i = 0; i < 256; ++i) {
-                const vec3 axis = direction(random);
-                for (int k = 0; k < 3; ++k) lobes->axis[k][i] = axis[k];
+                lobes->axis[i] = direction(random);
                 lobes->exponent[i] = bands % 2 == 0 ? 1.0f : 40.0f * random.uniform();
             }
-            sum_lobes(caches, *near, 256, *lobes);
+            (bands % 2 == 0 ? sum_cosines : sum_lobes)(caches, *near, 256, *lobes);
             for (int i = 0; i < 256; ++i) {
                 std::array<double, 3> mean{};
-                const vec3 axis(lobes->axis[0][i], lobes->axis[1][i], lobes->axis[2][i]);
+                const vec3 axis = lobes->axis[i];
                 for (const auto& near_cache : near_one(s, g, static_cast<std::size_t>(i))) {
                     const std::uint32_t cache = near_cache.first;
                     const float weight = near_cache.second;

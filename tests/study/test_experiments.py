@@ -26,7 +26,7 @@ def smaller(study):
     """The same question of one scene, with few pixels, seeds and samples, grids that take no time, and 24 of very many methods."""
     less = {"grid.resolution": lambda n: 8 + n // 16, "march.cones": lambda n: 3 + n // 8, "march.samples": lambda n: 1 + n // 16}
     less |= {"place_surfels.surfels": lambda n: n // 32, "place_caches.texels": lambda n: n // 8}
-    less |= {f"place_caches.grid.{axis}": lambda n: 2 + n // 8 for axis in ("nx", "ny", "nz")}
+    less |= {f"place_caches.{grid}{axis}": lambda n: 2 + n // 8 for grid in ("", "grid.") for axis in ("nx", "ny", "nz")}
     methods = []
     for method in study.methods:
         knobs = method.knobs()

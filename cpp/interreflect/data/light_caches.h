@@ -33,13 +33,28 @@ struct LightMapSites {
 
     std::size_t bytes() const { return cache.bytes() + triangle.bytes() + texcoord.bytes() + planes.bytes() + plane_of.bytes(); }
 };
-/// A box of caches, x fastest.
+/// A box of caches, x fastest; or several of them over each other, each with half as many cells along an axis as the one before.
 struct GridSites {
-    ivec3 size{0};  // caches along each axis; 0: there is no grid
+    ivec3 size{0};  // caches along each axis of the finest level; 0: there is no grid
     Bounds box{};
-    Buffer<std::uint32_t> cache;    // of every cell; no_cache inside of solids
-    Buffer<std::uint32_t> nearest;  // of every cell: its own, or that of the nearest cell that has one, by steps between cells
+    Buffer<std::uint32_t> cache;    // of every cell, from the finest level on; no_cache inside of solids
+    Buffer<std::uint32_t> nearest;  // of every cell: its own, or that of its level's nearest that has one, by steps between cells
+    int levels = 1;
+    float reach = 0;  // how far from the camera pixels read the finest level, scene units; each next one reaches twice as far
+
+    ivec3 size_of(int level) const { return (size + ((1 << level) - 1)) / (1 << level); }
+    std::size_t cells_of(int level) const {
+        const ivec3 n = size_of(level);
+        return static_cast<std::size_t>(n.x) * static_cast<std::size_t>(n.y) * static_cast<std::size_t>(n.z);
+    }
+    /// Cells of the levels before one.
+    std::size_t first_of(int level) const {
+        std::size_t first = 0;
+        for (int l = 0; l < level; ++l) first += cells_of(l);
+        return first;
+    }
 };
+inline constexpr int most_grid_levels = 8;
 
 struct CacheSites {
     Buffer<vec3> position;  // world space

@@ -55,6 +55,17 @@ void check_tree(const SurfelTree& tree, std::size_t n) {
     need(leaf == n && (nodes == 0 || tree.leaves[nodes - 1] == n), "tree: its root does not hold all surfels");
 }
 
+void check_grid(const GridSites& grid) {
+    bool sound = grid.levels >= 1 && grid.levels <= most_grid_levels && std::isfinite(grid.reach) && grid.reach >= 0.0f;
+    for (int axis = 0; axis < 3; ++axis)
+        sound = sound && grid.size[axis] >= 0 && grid.size[axis] <= most_side && (grid.size[axis] > 0) == (grid.size.x > 0);
+    need(sound, "caches: a box of " + std::to_string(grid.size.x) + " x " + std::to_string(grid.size.y) + " x " +
+                    std::to_string(grid.size.z) + " cells in " + std::to_string(grid.levels) + " levels");
+    const std::size_t cells = grid.first_of(grid.levels);
+    need(grid.cache.size() == cells && grid.nearest.size() == cells,
+         "caches: a box of " + std::to_string(cells) + " cells with " + std::to_string(grid.cache.size()));
+}
+
 }  // namespace
 
 void check_stored(const ClusteredSurfels& stored, const Scene& scene) {
@@ -93,15 +104,8 @@ void check_stored(const CacheSites& sites, const Scene& scene) {
              map.texcoord,
              [&](const vec2& t) { return std::min(t.x, t.y) >= 0.0f && std::max(t.x, t.y) <= static_cast<float>(map.size); }),
          "caches: a texture coordinate beyond the light map");
+    check_grid(sites.grid);
     const GridSites& grid = sites.grid;
-    bool sound = true;
-    std::size_t cells = 1;
-    for (int axis = 0; axis < 3; ++axis) {
-        sound = sound && grid.size[axis] >= 0 && grid.size[axis] <= most_side && (grid.size[axis] > 0) == (grid.size.x > 0);
-        cells *= static_cast<std::size_t>(std::clamp(grid.size[axis], 0, most_side));
-    }
-    need(sound && grid.cache.size() == cells && grid.nearest.size() == cells,
-         "caches: a box of " + std::to_string(cells) + " cells with " + std::to_string(grid.cache.size()));
     need(caches_or_none(map.cache, n) && caches_or_none(grid.cache, n) && caches_or_none(grid.nearest, n),
          "caches: a texel or cell names a cache that is not there");
 }

@@ -16,7 +16,7 @@ Buffer<std::uint8_t> used_caches(const CacheSites& sites, const GBuffer& gbuffer
         for (std::size_t first = begin; first < end; first += NearCaches::length) {
             const int count = static_cast<int>(std::min<std::size_t>(NearCaches::length, end - first));
             finder.find(first, count, near);
-            for (int slot = 0; slot < NearCaches::slots; ++slot)
+            for (int slot = 0; slot < near.slots; ++slot)
                 for (int k = 0; k < count; ++k) {
                     if (!(near.weight[slot][k] > 0.0f)) continue;
                     // Neighbours read the same caches: most are marked already.

@@ -14,7 +14,7 @@ from interreflect.scenes.mapped import map_file
 from interreflect.study.files import DamagedFile, replacing
 
 KIND = b"interreflect precomputation "
-VERSION = 1
+VERSION = 2
 MAGIC = KIND + b"%d\n" % VERSION
 CHECK = 32  # bytes of the checksum, which follows the first line
 ALIGN = 64

@@ -60,7 +60,7 @@ SurfelLight evaluate(const DirectLinks&, const CacheLinks& links, const NodeLigh
                 if (gbuffer.hit(pixel)) {
                     const PixelSurface surface(gbuffer, scene, pixel);
                     std::uint64_t used = 0;
-                    for (int k = 0; k < NearCaches::slots; ++k) {
+                    for (int k = 0; k < near.slots; ++k) {
                         if (!(near.weight[k][of] > 0.0f)) continue;
                         ++used;
                         const std::size_t first = near.cache[k][of] * per_cache;

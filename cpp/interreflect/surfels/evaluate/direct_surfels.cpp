@@ -30,7 +30,7 @@ std::vector<Read> reads_of(const Tile& tile, const CacheFinder& finder, int widt
         finder.find(static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(tile.x0),
                     tile.x1 - tile.x0, near);
         for (int x = 0; x < tile.x1 - tile.x0; ++x)
-            for (int slot = 0; slot < NearCaches::slots; ++slot)
+            for (int slot = 0; slot < near.slots; ++slot)
                 if (near.weight[slot][x] > 0.0f)
                     reads.push_back(
                         {near.cache[slot][x], static_cast<std::uint32_t>((y - tile.y0) * tile_size + x), near.weight[slot][x]});

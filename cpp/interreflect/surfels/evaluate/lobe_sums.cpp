@@ -118,7 +118,7 @@ class Shared {
   public:
     HWY_INLINE Shared(const NearCaches& near, int at) {
         const Tag d;
-        for (int k = 0; k < NearCaches::slots; ++k) {
+        for (int k = 0; k < near.slots; ++k) {
             cache_[k] = hn::Load(Number(), near.cache[k] + at), weight_[k] = hn::Load(d, near.weight[k] + at);
             if (!hn::AllTrue(d, hn::Eq(weight_[k], hn::Zero(d)))) slots_ = k + 1;
         }
@@ -146,8 +146,8 @@ class Shared {
 
   private:
     using Number = hn::RebindToUnsigned<Tag>;
-    hn::Vec<Number> cache_[NearCaches::slots];
-    Vector weight_[NearCaches::slots];
+    hn::Vec<Number> cache_[NearCaches::most_slots];
+    Vector weight_[NearCaches::most_slots];
     const std::uint32_t* numbers_;
     int slots_ = 0;
 };

@@ -56,7 +56,7 @@ class Runs {
             const std::size_t pixel = first + static_cast<std::size_t>(i);
             if (!g_.hit(pixel) || !(max_component(g_.specular[pixel]) > 0.0f) || used_[i] == 0) continue;
             const int to = reflections_.count;
-            for (int k = 0; k < NearCaches::slots; ++k)
+            for (int k = 0; k < near_.slots; ++k)
                 near_.cache[k][to] = near_.cache[k][i], near_.weight[k][to] = near_.weight[k][i];
             reflections_.add(g_, tables_, pixel);
         }

@@ -1,6 +1,7 @@
 #include "surfels/sites/cache_grid.h"
 
 #include <algorithm>
+#include <span>
 #include <vector>
 
 #include "math/parallel.h"
@@ -9,11 +10,9 @@
 namespace interreflect {
 namespace {
 
-/// Of every cell of a grid the nearest cache by steps between cells.
-Buffer<std::uint32_t> flood(const GridSites& grid) {
-    Buffer<std::uint32_t> nearest(grid.cache.size());
-    std::copy(grid.cache.begin(), grid.cache.end(), nearest.begin());
-    const int strides[3] = {1, grid.size.x, grid.size.x * grid.size.y};
+/// The nearest cache of every cell of a level, by steps between cells; `nearest` holds their own when it begins.
+void flood(const ivec3& size, std::span<std::uint32_t> nearest) {
+    const int strides[3] = {1, size.x, size.x * size.y};
     std::vector<std::size_t> front, next;
     for (std::size_t cell = 0; cell < nearest.size(); ++cell)
         if (nearest[cell] != no_cache) front.push_back(cell);
@@ -21,9 +20,9 @@ Buffer<std::uint32_t> flood(const GridSites& grid) {
         next.clear();
         for (const std::size_t cell : front)
             for (int axis = 0; axis < 3; ++axis) {
-                const int at = static_cast<int>(cell / static_cast<std::size_t>(strides[axis])) % grid.size[axis];
+                const int at = static_cast<int>(cell / static_cast<std::size_t>(strides[axis])) % size[axis];
                 for (const int step : {-1, 1}) {
-                    if (at + step < 0 || at + step >= grid.size[axis]) continue;
+                    if (at + step < 0 || at + step >= size[axis]) continue;
                     const auto beside = static_cast<std::size_t>(static_cast<std::ptrdiff_t>(cell) + step * strides[axis]);
                     if (nearest[beside] != no_cache) continue;
                     nearest[beside] = nearest[cell];
@@ -32,37 +31,46 @@ Buffer<std::uint32_t> flood(const GridSites& grid) {
             }
         front.swap(next);
     }
-    return nearest;
+}
+
+/// The middles of all levels' cells.
+std::vector<vec3> middles(const GridSites& grid) {
+    std::vector<vec3> made;
+    for (int level = 0; level < grid.levels; ++level) {
+        const ivec3 n = grid.size_of(level);
+        const vec3 cell = (grid.box.upper - grid.box.lower) / vec3(n);
+        for (int z = 0; z < n.z; ++z)
+            for (int y = 0; y < n.y; ++y)
+                for (int x = 0; x < n.x; ++x) made.push_back(grid.box.lower + cell * (vec3(x, y, z) + 0.5f));
+    }
+    return made;
 }
 
 }  // namespace
+
 CacheSites place_caches(const CacheGrid& technique, const Scene& scene, const Intersector& intersector, const Bounds& about) {
-    const ivec3 size(technique.nx, technique.ny, technique.nz);
-    const std::size_t cells =
-        static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y) * static_cast<std::size_t>(size.z);
     CacheSites sites;
-    Bounds box = about;
-    if (!(box.lower.x <= box.upper.x)) box = {vec3(0), vec3(0)};
-    sites.grid = {size, box, Buffer<std::uint32_t>(cells), {}};
-    const auto middle = [&](std::size_t cell) {
-        const auto x = cell % static_cast<std::size_t>(size.x), rest = cell / static_cast<std::size_t>(size.x);
-        const vec3 at(static_cast<float>(x), static_cast<float>(rest % static_cast<std::size_t>(size.y)),
-                      static_cast<float>(rest / static_cast<std::size_t>(size.y)));
-        return box.lower + (box.upper - box.lower) * ((at + 0.5f) / vec3(size));
-    };
-    std::vector<std::uint8_t> open(cells);
-    parallel_blocks(cells, 64, [&](std::size_t begin, std::size_t end) {
+    GridSites& grid = sites.grid;
+    grid.size = ivec3(technique.nx, technique.ny, technique.nz), grid.box = about, grid.levels = technique.levels;
+    if (!(about.lower.x <= about.upper.x)) grid.box = {vec3(0), vec3(0)};
+    grid.reach = static_cast<float>(technique.reach) * max_component((grid.box.upper - grid.box.lower) / vec3(grid.size));
+    const std::vector<vec3> middle = middles(grid);
+    std::vector<std::uint8_t> open(middle.size());
+    parallel_blocks(middle.size(), 64, [&](std::size_t begin, std::size_t end) {
         for (std::size_t cell = begin; cell < end; ++cell)
             open[cell] = technique.most_backs >= 1 ||
-                         static_cast<double>(look_about(middle(cell), vec3(0), scene, intersector).share_of_backs()) <=
+                         static_cast<double>(look_about(middle[cell], vec3(0), scene, intersector).share_of_backs()) <=
                              technique.most_backs;
     });
+    grid.cache = Buffer<std::uint32_t>(middle.size()), grid.nearest = Buffer<std::uint32_t>(middle.size());
     std::uint32_t count = 0;
-    for (std::size_t cell = 0; cell < cells; ++cell) sites.grid.cache[cell] = open[cell] != 0 ? count++ : no_cache;
+    for (std::size_t cell = 0; cell < middle.size(); ++cell) grid.cache[cell] = open[cell] != 0 ? count++ : no_cache;
+    std::ranges::copy(grid.cache, grid.nearest.begin());
+    for (int level = 0; level < grid.levels; ++level)
+        flood(grid.size_of(level), grid.nearest.span().subspan(grid.first_of(level), grid.cells_of(level)));
     sites.position = Buffer<vec3>(count), sites.normal = Buffer<vec3>(count, vec3(0)), sites.offset = Buffer<float>(count, 0.0f);
-    for (std::size_t cell = 0; cell < cells; ++cell)
-        if (open[cell] != 0) sites.position[sites.grid.cache[cell]] = middle(cell);
-    sites.grid.nearest = flood(sites.grid);
+    for (std::size_t cell = 0; cell < middle.size(); ++cell)
+        if (open[cell] != 0) sites.position[grid.cache[cell]] = middle[cell];
     sites.counts.caches = count;
     return sites;
 }
