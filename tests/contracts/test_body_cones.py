@@ -95,29 +95,54 @@ def test_caches_lose_what_rays_that_meet_the_body_do_not_bring():
     assert np.linalg.norm(lost - truly) < 0.5 * np.linalg.norm(truly), np.linalg.norm(lost - truly) / np.linalg.norm(truly)
 
 
+class EvenLight:
+    """A cache in the middle of a room that is equally bright everywhere, with a body in it."""
+
+    def __init__(self, positions, triangles, at=(0, 0, 0)):
+        body = ir.Mesh(np.float32(positions), np.uint32(triangles), body="body", material=ir.Material(albedo=(0,) * 3))
+        walls = box(inward=True)
+        pose = np.eye(4)
+        pose[:3, 3] = at
+        self.scene, self.empty = ir.Scene(meshes=[body, walls], bodies={"body": pose}), ir.Scene(meshes=[walls])
+        placed = stages.place_surfels(ir.HaltonSurfels(surfels=2048), self.empty)
+        self.surfels = stages.cluster_surfels(ir.Agglomerative(), placed)
+        self.sites = stages.place_caches(ir.CacheGrid(nx=1, ny=1, nz=1), self.empty)
+        self.by = ir.ShLinks(links=512)
+        self.links = stages.link(self.by, self.sites, self.surfels, self.empty)
+        self.even = stages.pull(self.surfels, np.ones((len(self.surfels), 3), np.float32))
+
+    def coefficients(self, technique=None):
+        """Of the cache's red; without the body's shadow where there is no technique."""
+        caches = stages.light_caches(self.by, self.links, self.sites, self.surfels, self.even, self.empty)
+        if technique is not None:
+            voxels = voxels_of(self.scene, "body", 64)
+            given = (caches, self.links, self.even, self.sites, self.surfels, voxels, self.scene.core)
+            _core.shadow_links(technique, *given)
+        return coefficients(caches)[0]
+
+
 def test_a_ball_blocks_the_closed_forms_share():
     """Closed form 9: a black ball of r = .25 at h = .5 takes (r / h)^2 of the irradiance of even light; its voxels make it wider by at
     most one and a half of them."""
     shape = sphere(0.25, segments=48)
-    ball = ir.Mesh(np.float32(shape.positions), np.uint32(shape.triangles), body="ball", material=ir.Material(albedo=(0,) * 3))
-    walls = box(inward=True)
-    pose = np.eye(4)
-    pose[2, 3] = 0.5
-    scene, empty = ir.Scene(meshes=[ball, walls], bodies={"ball": pose}), ir.Scene(meshes=[walls])
-    surfels = stages.cluster_surfels(ir.Agglomerative(), stages.place_surfels(ir.HaltonSurfels(surfels=2048), empty))
-    sites, technique = stages.place_caches(ir.CacheGrid(nx=1, ny=1, nz=1), empty), ir.ShLinks(links=512)
-    links, even = stages.link(technique, sites, surfels, empty), stages.pull(surfels, np.ones((len(surfels), 3), np.float32))
-    caches = stages.light_caches(technique, links, sites, surfels, even, empty)
-
-    def irradiance():
-        """Along z: the clamped cosine's bands (closed form 16), of the coefficients with m = 0."""
-        of_bands = np.pi * np.array([1, 2 / 3, 1 / 4]) * np.sqrt((2 * np.arange(3) + 1) / (4 * np.pi))
-        return float(of_bands @ coefficients(caches)[0][[0, 2, 6]])
-
-    before = irradiance()
+    light = EvenLight(shape.positions, shape.triangles, at=(0, 0, 0.5))
+    # Along z: the clamped cosine's bands (closed form 16), of the coefficients with m = 0.
+    of_bands = np.pi * np.array([1, 2 / 3, 1 / 4]) * np.sqrt((2 * np.arange(3) + 1) / (4 * np.pi))
+    before, after = (float(of_bands @ light.coefficients(way)[[0, 2, 6]]) for way in (None, ir.BodyCones()))
     assert before == pytest.approx(np.pi, rel=0.01)
-    _core.shadow_links(ir.BodyCones(), caches, links, even, sites, surfels, voxels_of(scene, "ball", 64), scene.core)
-    assert (0.25 / 0.5) ** 2 < 1 - irradiance() / before < ((0.25 + 1.5 * 2 / 64) / 0.5) ** 2  # measured .318
+    assert (0.25 / 0.5) ** 2 < 1 - after / before < ((0.25 + 1.5 * 2 / 64) / 0.5) ** 2  # measured .318
+
+
+@pytest.mark.parametrize("density", [1.0, 2.0, 4.0])
+def test_a_shell_lets_through_what_its_filtered_layer_does(density):
+    """Between voxels opacity falls off linearly, 1 - |t|, so a ray straight through a layer one voxel thick meets an optical depth
+    of -integral of ln |t| from -1 to 1 = 2 voxels, and slanted ones more: at most exp(-2 density) of the light comes through."""
+    shape = sphere(0.4, segments=48)
+    light = EvenLight(shape.positions, np.asarray(shape.triangles)[:, ::-1])  # seen from within
+    open_ = light.coefficients(ir.BodyCones(density=density))[0] / light.coefficients()[0]
+    assert open_ < np.exp(-2 * density) + 0.002  # half floats
+    if density == 1:
+        assert open_ > 0.03  # so that whoever closes the layers changes this text
 
 
 def test_a_moved_body_is_the_bodys_frame_and_takes_no_precomputation():

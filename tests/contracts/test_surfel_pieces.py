@@ -167,7 +167,7 @@ def flip(data, at):
     (lambda data: data[: len(data) // 2], DamagedFile, "cut short"),
     (lambda data: b"", ValueError, "not a precomputation"),
     (lambda data: b"v/1" + data, ValueError, "not a precomputation"),
-    (lambda data: data.replace(b"precomputation 1\n", b"precomputation 7\n"), ValueError, "format version must be 1, got 7"),
+    (lambda data: data.replace(b"precomputation 2\n", b"precomputation 7\n"), ValueError, "format version must be 2, got 7"),
 ])  # fmt: skip
 def test_a_damaged_file_is_an_error_that_names_it(saved, change, error, message):
     saved.write_bytes(change(saved.read_bytes()))

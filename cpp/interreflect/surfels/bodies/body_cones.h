@@ -14,7 +14,9 @@ namespace interreflect {
 /// light that it covers, and sends what its voxels reflect of direct light. The paper names it as future work: "the missing
 /// shadows and reflections of dynamic objects could be included by a voxel cone tracing approach. This is possible with a
 /// voxelization of the dynamic parts only because shadow and reflections of everything else are already included". A cache of a
-/// grid that a body has moved over keeps its light: it lights the body's own surface.
+/// grid that a body has moved over keeps its light: it lights the body's own surface. A surface is a layer of voxels one thick,
+/// between which opacity falls off linearly: up to exp(-2 density) of the light comes through it, and exp(-4 density)
+/// through the two layers of a solid body.
 struct BodyCones : MarchKnobs {
     int resolution = 64;
     double aperture = 0.25;
