@@ -1,20 +1,22 @@
 """The suite `surfels`: the stages of illuminance composition in the paper's two settings, on Sponza by its sun at 1920 x 1080.
 
-Surfels are lit by a shadow map that is there, as in the paper; its own time is that of the stage's rows.
+Surfels are lit by a shadow map that is there, as in the paper; its own time is that of the stage's rows. Stages run in a frame's order:
+a stage finds in cache what the one before it left there, and nothing else.
 """
 
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
 import interreflect as ir
-from bench import limits, sponza
+from bench import limits, sponza, surfel_curve_rows
 from bench.calibration import TARGETS_MACHINE, Calibration, calibrate
 from bench.rows import Row, absent, within
-from bench.timing import least, timed
+from bench.timing import Work, least, timed
 from bench.voxel_pipeline import bounded, sunlit
 from interreflect import stages
 
@@ -51,7 +53,8 @@ def run(peers: Any) -> tuple[Calibration, list[Row]]:
     if measured_on is None:
         return calibration, [absent("illuminance composition", "as the stages' rows say", "Sponza is not here")]
     scene = sunlit(measured_on.scene)
-    return calibration, [row for setting in SETTINGS for row in rows(calibration, setting, scene)]
+    of_settings = [row for setting in SETTINGS for row in rows(calibration, setting, scene)]
+    return calibration, [*of_settings, *surfel_curve_rows.rows(scene)]
 
 
 def rows(calibration: Calibration, setting: Setting, scene: ir.Scene) -> list[Row]:
@@ -62,19 +65,25 @@ def rows(calibration: Calibration, setting: Setting, scene: ir.Scene) -> list[Ro
     cones = stages.link(cones_way, sites, surfels, scene)
     by_map = ir.ShadowMap()
     maps = stages.shadow_maps(by_map, scene)
-    lit = np.asarray(stages.shadow(by_map, scene, pixels, maps=maps).radiance)
-    sent = stages.pull(surfels, lit)
-    caches = stages.light_caches(way.link, links, sites, surfels, sent, scene)
     gbuffer = ir.trace_gbuffer(scene, "nave", SIZE)
-    times = least(
-        timed(lambda: stages.shadow(by_map, scene, pixels, maps=maps)), timed(lambda: stages.pull(surfels, lit)),
-        timed(lambda: stages.light_caches(way.link, links, sites, surfels, sent, scene)),
-        timed(lambda: stages.light_caches(cones_way, cones, sites, surfels, sent, scene)),
-        timed(lambda: stages.evaluate(way.evaluate, caches, sites, gbuffer, scene)), repeats=REPEATS,
+    made: dict[str, Any] = {}  # each stage reads what the one before has just made, as in a frame, and what the frame before left
+
+    def keep(product: str, call: Callable[[], Any]) -> Work:
+        return timed(lambda: made.__setitem__(product, call()))
+
+    def lights(technique: Any, by: Any) -> Callable[[], Any]:
+        return lambda: stages.light_caches(technique, by, sites, surfels, made["sent"], scene)
+
+    lighting, pulling, projected, evaluated, by_cones = least(
+        keep("lit", lambda: stages.shadow(by_map, scene, pixels, maps=maps)),
+        keep("sent", lambda: stages.pull(surfels, np.asarray(made["lit"].radiance))),
+        keep("caches", lights(way.link, links)),
+        keep("seen", lambda: stages.evaluate(way.evaluate, made["caches"], sites, gbuffer, scene)),
+        keep("by cones", lights(cones_way, cones)), repeats=REPEATS,
     )  # fmt: skip
-    lighting, pulling, projected, by_cones, evaluated = times
+    caches, sent = made["caches"], made["sent"]
     name = setting.name
-    evaluations = stages.evaluate(way.evaluate, caches, sites, gbuffer, scene).counts.asdict()["cache_evaluations"]
+    evaluations = made["seen"].counts.asdict()["cache_evaluations"]
     told = f"{len(surfels)} surfels, {len(sites)} caches"
     links_limit = lambda c: limits.move(c, links.bytes)  # noqa: E731
     limit_of = {
