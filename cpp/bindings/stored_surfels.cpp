@@ -49,7 +49,7 @@ void each_field(CacheSites& s, const Visit& visit) {
     visit("map_size", s.map.size), visit("map_cache", s.map.cache);
     visit("map_triangle", s.map.triangle), visit("map_texcoord", s.map.texcoord);
     visit("nx", s.grid.size.x), visit("ny", s.grid.size.y), visit("nz", s.grid.size.z);
-    visit("levels", s.grid.levels), visit("reach", s.grid.reach);
+    visit("levels", s.grid.levels), visit("reach", s.grid.reach), visit("normal_offset", s.grid.normal_offset);
     visit("lower_x", s.grid.box.lower.x), visit("lower_y", s.grid.box.lower.y), visit("lower_z", s.grid.box.lower.z);
     visit("upper_x", s.grid.box.upper.x), visit("upper_y", s.grid.box.upper.y), visit("upper_z", s.grid.box.upper.z);
     visit("grid_cache", s.grid.cache), visit("grid_nearest", s.grid.nearest);

@@ -15,7 +15,7 @@ from experiments.shared.panels import as_light, as_share, groups, picture
 from experiments.shared.scenes import car_in_a_hall, sunny_phong_sponza
 
 SIZE = (640, 360)
-CAR_GRID = ir.CacheGrid(nx=32, ny=12, nz=20)  # the car is a body: it is lit by the grid
+CAR_GRID = ir.CacheGrid(nx=32, ny=12, nz=20, normal_offset=0.0)  # the car is a body: it is lit by the grid
 SAMPLES = ir.TracedSky(samples=64, filter_radius=2)
 
 

@@ -23,7 +23,7 @@ ANGLE = 10.0  # half angle of the small spot, degrees
 
 def room(texels: int = 64, backs: float = 0.5, links: int = 128, tree: Any = None, bounces: int | None = 1) -> Any:
     """Setting 2 for a room: a coarse map, so that texels reach under what stands on the floor, and a coarse grid."""
-    caches = ir.LightMap(texels=texels, most_backs=backs, grid=ir.CacheGrid(nx=8, ny=8, nz=8))
+    caches = ir.LightMap(texels=texels, most_backs=backs, grid=ir.CacheGrid(nx=8, ny=8, nz=8, normal_offset=0.0))
     way = composition("setting 2", place_caches=caches, link__links=links, bounces=bounces)
     return way if tree is None else way.replace(cluster_surfels=tree)
 

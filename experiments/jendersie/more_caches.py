@@ -9,7 +9,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 import interreflect as ir
-from experiments.jendersie.pipeline import SMALL, compared, composition, difference, indirect, milliseconds, precomputed
+from experiments.jendersie.pipeline import GRID, SMALL, compared, composition, difference, indirect, milliseconds, precomputed
 from experiments.shared.panels import as_light, panels
 
 TEXELS = (64, 128, 256, 512)  # the grid grows with the map
@@ -18,7 +18,8 @@ TEXELS = (64, 128, 256, 512)  # the grid grows with the map
 def studies() -> Sequence[ir.Study]:
     def caches(texels: int) -> ir.LightMap:
         part = texels / 128
-        return ir.LightMap(texels=texels, grid=ir.CacheGrid(nx=round(24 * part), ny=round(8 * part), nz=round(12 * part)))
+        nx, ny, nz = (round(side * part) for side in (24, 8, 12))
+        return ir.LightMap(texels=texels, grid=GRID.replace(nx=nx, ny=ny, nz=nz))
 
     ways = [composition("setting 2", place_caches=caches(texels)) for texels in TEXELS]
     reference = ir.Reference(noise=2e-3, max_spp=512)

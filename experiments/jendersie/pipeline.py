@@ -17,7 +17,7 @@ FULL = (1920, 1080)  # the paper's pictures
 SMALL = (320, 180)  # where a truth with little noise is wanted
 MIB = 2**20
 CLEAN = ir.Reference(noise=2e-3, max_spp=1024)  # at SMALL
-GRID = ir.CacheGrid(nx=24, ny=8, nz=12)  # the paper's, of Sponza
+GRID = ir.CacheGrid(nx=24, ny=8, nz=12, normal_offset=0.0)  # the paper's, of Sponza
 
 Image = NDArray[np.floating[Any]]
 

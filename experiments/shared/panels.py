@@ -69,12 +69,12 @@ def picture(records: ir.Records, index: int = 0) -> Image:
 
 
 def table_figure(table: pd.DataFrame, title: str) -> Figure:
-    """A table of numbers, with two digits after the point."""
+    """A table of numbers, with two digits after the point; what there is not stays empty."""
     heads = ["\n".join(map(str, name)) if isinstance(name, tuple) else str(name) for name in table.columns]
     figure = new_figure((2.6 + 0.95 * len(heads), 0.9 + 0.3 * len(table)), dark=False)
     axes = figure.subplots()
     axes.set_axis_off()
-    cells = [[f"{value:.2f}" for value in row] for row in table.to_numpy()]
+    cells = [["" if np.isnan(value) else f"{value:.2f}" for value in row] for row in table.to_numpy()]
     drawn = axes.table(cellText=cells, rowLabels=[str(name) for name in table.index], colLabels=heads, loc="center", cellLoc="right")
     drawn.auto_set_font_size(False)
     drawn.set_fontsize(8)

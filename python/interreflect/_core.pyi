@@ -3428,10 +3428,10 @@ class CacheGrid:
     description: ClassVar[dict[str, Any]]
     stages: ClassVar[tuple[str, ...]]
 
-    def __init__(self, *, nx: int=..., ny: int=..., nz: int=..., most_backs: float=..., levels: int=..., reach: float=...) -> None:
+    def __init__(self, *, nx: int=..., ny: int=..., nz: int=..., most_backs: float=..., levels: int=..., reach: float=..., normal_offset: float=...) -> None:
         ...
 
-    def replace(self, *, nx: int=..., ny: int=..., nz: int=..., most_backs: float=..., levels: int=..., reach: float=...) -> CacheGrid:
+    def replace(self, *, nx: int=..., ny: int=..., nz: int=..., most_backs: float=..., levels: int=..., reach: float=..., normal_offset: float=...) -> CacheGrid:
         ...
 
     def asdict(self) -> dict[str, Any]:
@@ -3465,6 +3465,10 @@ class CacheGrid:
 
     @property
     def reach(self) -> float:
+        ...
+
+    @property
+    def normal_offset(self) -> float:
         ...
 class LightMap:
     """A cache for every texel of a map over the still surface, and a grid for all else."""

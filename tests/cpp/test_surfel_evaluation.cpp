@@ -58,6 +58,7 @@ CacheSites sites(int levels = 1) {
     std::uint32_t next = 0;
     for (std::size_t i = 0; i < 64; ++i) s.map.cache[i] = i % 3 == 0 || i < 24 ? no_cache : next++;
     s.grid.size = {3, 1, 4}, s.grid.box = {vec3(0), vec3(1)}, s.grid.levels = levels, s.grid.reach = 0.3f;
+    s.grid.normal_offset = levels == 3 ? 0.4f : 0.0f;
     const std::size_t cells = s.grid.first_of(levels);
     s.grid.cache = Buffer<std::uint32_t>(cells), s.grid.nearest = Buffer<std::uint32_t>(cells);
     for (std::size_t i = 0; i < cells; ++i) s.grid.cache[i] = i % 3 == 1 || i < 5 ? no_cache : next++;
@@ -87,10 +88,10 @@ float share_of_level(const GridSites& grid, int level, float distance) {
 }
 
 /// Trilinear in a level, else its stand-in.
-Weights near_in_level(const GridSites& grid, int level, const vec3& p) {
+Weights near_in_level(const GridSites& grid, int level, const vec3& p, const vec3& normal) {
     Weights found;
     const ivec3 cells = grid.size_of(level);
-    const vec3 size(cells), at = glm::clamp(p * size - 0.5f, vec3(0), size - 1.0f);
+    const vec3 size(cells), at = glm::clamp(p * size - 0.5f + grid.normal_offset * normal, vec3(0), size - 1.0f);
     const vec3 low = glm::min(glm::floor(at), glm::max(size - 2.0f, vec3(0))), share = at - low;
     float most = -1;
     std::uint32_t nearest = no_cache;
@@ -127,7 +128,7 @@ Weights near_one(const CacheSites& s, const GBuffer& g, std::size_t i) {
     }
     for (int level = 0; level < s.grid.levels; ++level) {
         const float share = share_of_level(s.grid, level, g.seen_head_on ? 1e9f : glm::length(p - g.camera.position));
-        for (const auto& [cache, weight] : near_in_level(s.grid, level, p))
+        for (const auto& [cache, weight] : near_in_level(s.grid, level, p, g.geometric_normal[i]))
             if (share > 0.0f) found[cache] += share * weight;
     }
     return normalised(found);

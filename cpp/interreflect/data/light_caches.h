@@ -41,6 +41,7 @@ struct GridSites {
     Buffer<std::uint32_t> nearest;  // of every cell: its own, or that of its level's nearest that has one, by steps between cells
     int levels = 1;
     float reach = 0;  // how far from the camera pixels read the finest level, scene units; each next one reaches twice as far
+    float normal_offset = 0;  // how far along their geometric normals pixels look, cells
 
     ivec3 size_of(int level) const { return (size + ((1 << level) - 1)) / (1 << level); }
     std::size_t cells_of(int level) const {

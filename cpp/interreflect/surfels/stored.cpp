@@ -56,7 +56,8 @@ void check_tree(const SurfelTree& tree, std::size_t n) {
 }
 
 void check_grid(const GridSites& grid) {
-    bool sound = grid.levels >= 1 && grid.levels <= most_grid_levels && std::isfinite(grid.reach) && grid.reach >= 0.0f;
+    bool sound = grid.levels >= 1 && grid.levels <= most_grid_levels && std::isfinite(grid.reach) && grid.reach >= 0.0f &&
+                 std::isfinite(grid.normal_offset);
     for (int axis = 0; axis < 3; ++axis)
         sound = sound && grid.size[axis] >= 0 && grid.size[axis] <= most_side && (grid.size[axis] > 0) == (grid.size.x > 0);
     need(sound, "caches: a box of " + std::to_string(grid.size.x) + " x " + std::to_string(grid.size.y) + " x " +

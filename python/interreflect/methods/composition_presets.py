@@ -8,8 +8,8 @@ from interreflect import _core
 
 PAPER: dict[str, Any] = {"bounces": None, "cluster_surfels": _core.Agglomerative(normal_weight=0.1, balance_weight=0.02)}
 # A light map of 128 x 128 and a grid of 24 x 8 x 12, as in 5.3.4; the paper does not say how many rays it sent to a surfel, and it has no
-# rays to what is near (near_rays).
-CACHES = _core.LightMap(texels=128, grid=_core.CacheGrid(nx=24, ny=8, nz=12))
+# rays to what is near (near_rays), nor does it look before surfaces (normal_offset).
+CACHES = _core.LightMap(texels=128, grid=_core.CacheGrid(nx=24, ny=8, nz=12, normal_offset=0.0))
 
 PRESETS: dict[str, dict[str, Any]] = {
     "setting 1": {

@@ -44,12 +44,24 @@ void look_up_charts(const CacheSites& sites, const GBuffer& g, std::size_t first
     }
 }
 
+/// The first `count` of a vector.
+HWY_INLINE Vec3 load(const vec3* from, std::size_t count) {
+    alignas(64) float values[3 * lanes] = {};
+    std::copy_n(&from->x, 3 * count, values);
+    Vec3 v;
+    hn::LoadInterleaved3(Tag(), values, v.x, v.y, v.z);
+    return v;
+}
+HWY_INLINE Vec3 same(const vec3& v) {
+    const Tag d;
+    return {hn::Set(d, v.x), hn::Set(d, v.y), hn::Set(d, v.z)};
+}
+
 /// From the camera; infinite for surface points that no one camera sees.
 HWY_INLINE Vector distance_of(const GBuffer& g, const Vec3& position) {
     const Tag d;
     if (g.seen_head_on) return hn::Set(d, std::numeric_limits<float>::infinity());
-    const vec3& eye = g.camera.position;
-    const Vec3 to = moved(position, {hn::Set(d, eye.x), hn::Set(d, eye.y), hn::Set(d, eye.z)}, hn::Set(d, -1.0f));
+    const Vec3 to = moved(position, same(g.camera.position), hn::Set(d, -1.0f));
     return hn::Sqrt(dot(to, to));
 }
 
@@ -67,16 +79,13 @@ void FindCaches(const CacheSites& sites, const GBuffer& g, std::size_t first, st
         if (!hn::AllFalse(d, mapped)) map = in_map(sites.map, mapped, u, v);
         const auto other = hn::And(hn::Gt(state, hn::Zero(d)), hn::Eq(map.sum, hn::Zero(d)));
         if (!hn::AllFalse(d, other) && sites.grid.size.x > 0) {
-            alignas(64) float places3[3 * lanes] = {};
-            std::copy_n(&g.position[first + at].x, 3 * here, places3);
-            Vec3 position;
-            hn::LoadInterleaved3(d, places3, position.x, position.y, position.z);
             const vec3& lower = sites.grid.box.lower;  // undefined where nothing was hit
-            position = choose(other, position, {hn::Set(d, lower.x), hn::Set(d, lower.y), hn::Set(d, lower.z)});
+            const Vec3 position = choose(other, load(&g.position[first + at], here), same(lower));
+            const Vec3 normal = choose(other, load(&g.geometric_normal[first + at], here), same(vec3(0)));
             if (sites.grid.levels == 1) {
-                map.take(other, in_level(sites.grid, 0, other, position));
+                map.take(other, in_level(sites.grid, 0, other, position, normal));
             } else {
-                const LevelSlots levels(sites.grid, other, position, distance_of(g, position));
+                const LevelSlots levels(sites.grid, other, position, normal, distance_of(g, position));
                 map.take(other, levels.half[0]), odd.take(other, levels.half[1]);
             }
         }

@@ -117,11 +117,13 @@ struct Between {
     Index low;
     Vector share;
 
-    HWY_INLINE Between(Vector position, float lower, float upper, int cells) {
+    /// offset: cells added to the position.
+    HWY_INLINE Between(Vector position, float lower, float upper, int cells, Vector offset) {
         const Tag d;
         const Whole di;
         const Vector size = hn::Set(d, std::max(upper - lower, 1e-30f)), count = hn::Set(d, static_cast<float>(cells));
-        const Vector at = hn::MulSub(hn::Div(hn::Sub(position, hn::Set(d, lower)), size), count, hn::Set(d, 0.5f));
+        const Vector at =
+            hn::MulAdd(hn::Div(hn::Sub(position, hn::Set(d, lower)), size), count, hn::Sub(offset, hn::Set(d, 0.5f)));
         const Vector inside = hn::Min(hn::Max(at, hn::Zero(d)), hn::Set(d, static_cast<float>(cells - 1)));
         low = hn::Min(hn::ConvertTo(di, inside), hn::Set(di, std::max(cells - 2, 0)));
         share = hn::Sub(inside, hn::ConvertTo(d, low));
@@ -129,15 +131,16 @@ struct Between {
 };
 
 /// Trilinear between the cells about a position where `hit` holds; where all of them are missing, the nearest cell's stand-in.
-HWY_INLINE Slots in_level(const GridSites& grid, int level, LaneMask hit, const Vec3& position) {
+HWY_INLINE Slots in_level(const GridSites& grid, int level, LaneMask hit, const Vec3& position, const Vec3& normal) {
     const Tag d;
     const Whole di;
     const vec3 &lower = grid.box.lower, &upper = grid.box.upper;
     const ivec3 size = grid.size_of(level);
     const std::size_t first_cell = grid.first_of(level);
     const std::uint32_t *const caches = grid.cache.data() + first_cell, *const nearest_of = grid.nearest.data() + first_cell;
-    const Between x(position.x, lower.x, upper.x, size.x), y(position.y, lower.y, upper.y, size.y),
-        z(position.z, lower.z, upper.z, size.z);
+    const Vec3 offset = scaled(normal, hn::Set(d, grid.normal_offset));
+    const Between x(position.x, lower.x, upper.x, size.x, offset.x), y(position.y, lower.y, upper.y, size.y, offset.y),
+        z(position.z, lower.z, upper.z, size.z, offset.z);
     const Index lowest = hn::Add(hn::Mul(hn::Add(hn::Mul(z.low, hn::Set(di, size.y)), y.low), hn::Set(di, size.x)), x.low);
     int corners = 0, place[NearCaches::level_slots];  // cells from the lowest one on
     Vector weight[NearCaches::level_slots];
@@ -180,7 +183,7 @@ HWY_INLINE Slots in_level(const GridSites& grid, int level, LaneMask hit, const 
 struct LevelSlots {
     Slots half[2];
 
-    HWY_INLINE LevelSlots(const GridSites& grid, LaneMask hit, const Vec3& position, Vector distance) {
+    HWY_INLINE LevelSlots(const GridSites& grid, LaneMask hit, const Vec3& position, const Vec3& normal, Vector distance) {
         const Tag d;
         const Vector zero = hn::Zero(d), one = hn::Set(d, 1.0f);
         constexpr float fade = 0.2f;  // of a level's reach
@@ -193,7 +196,7 @@ struct LevelSlots {
             beyond = next;
             const auto here = hn::And(hit, hn::Gt(share, zero));
             if (hn::AllFalse(d, here)) continue;
-            Slots found = in_level(grid, level, here, position);
+            Slots found = in_level(grid, level, here, position, normal);
             found.scale(hn::Mul(share, inverse(found.sum)));
             half[level & 1].take(here, found);
         }

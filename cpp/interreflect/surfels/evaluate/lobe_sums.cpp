@@ -130,13 +130,19 @@ class Shared {
         const Tag d;
         for (int k = 0; k < slots_; ++k)
             for (;;) {
-                const std::intptr_t first = hn::FindFirstTrue(d, hn::Gt(weight_[k], hn::Zero(d)));
+                const auto uses = hn::Gt(weight_[k], hn::Zero(d));
+                const std::intptr_t first = hn::FindFirstTrue(d, uses);
                 if (first < 0) break;
                 const std::uint32_t cache = numbers_[k * NearCaches::length + first];
                 const auto wanted = hn::Set(Number(), cache);
+                const auto same_in = [&](int slot) HWY_ATTR { return hn::RebindMask(d, hn::Eq(cache_[slot], wanted)); };
+                if (hn::AllFalse(d, hn::AndNot(same_in(k), uses))) {  // in one cell, slots have nothing in common
+                    take(cache, weight_[k]);
+                    break;
+                }
                 Vector weight = hn::Zero(d);
                 for (int other = k; other < slots_; ++other) {
-                    const auto same = hn::RebindMask(d, hn::Eq(cache_[other], wanted));
+                    const auto same = same_in(other);
                     weight = hn::Add(weight, hn::IfThenElseZero(same, weight_[other]));
                     weight_[other] = hn::IfThenZeroElse(same, weight_[other]);
                 }

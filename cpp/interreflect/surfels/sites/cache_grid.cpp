@@ -54,6 +54,7 @@ CacheSites place_caches(const CacheGrid& technique, const Scene& scene, const In
     grid.size = ivec3(technique.nx, technique.ny, technique.nz), grid.box = about, grid.levels = technique.levels;
     if (!(about.lower.x <= about.upper.x)) grid.box = {vec3(0), vec3(0)};
     grid.reach = static_cast<float>(technique.reach) * max_component((grid.box.upper - grid.box.lower) / vec3(grid.size));
+    grid.normal_offset = static_cast<float>(technique.normal_offset);
     const std::vector<vec3> middle = middles(grid);
     std::vector<std::uint8_t> open(middle.size());
     parallel_blocks(middle.size(), 64, [&](std::size_t begin, std::size_t end) {

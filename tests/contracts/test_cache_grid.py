@@ -1,4 +1,4 @@
-"""Grids of caches over each other: pixels read the finest that reaches them from the camera."""
+"""Grids of caches: where pixels look into them, and several over each other, of which pixels read the finest that reaches them."""
 
 from __future__ import annotations
 
@@ -25,6 +25,15 @@ def drawn(**grid):
 
 def indirect(**grid):
     return np.asarray(drawn(**grid).indirect)
+
+
+def test_a_look_before_the_surface_counts_caches_behind_it_less():
+    truth = np.asarray(ir.reference(cornell_box(), size=SIZE, bounces=1, noise=1e-2, max_spp=128).indirect)
+    way = METHOD.replace({"place_surfels.surfels": 4096, "link.links": 254})
+    grids = [FINE.replace(ny=8, normal_offset=offset) for offset in (0.0, 0.25)]
+    drawn_by = [np.asarray(way.replace(place_caches=grid).render(cornell_box(), size=SIZE).indirect) for grid in grids]
+    on_it, before_it = (ir.metrics.relmse(image, truth) for image in drawn_by)
+    assert before_it < 0.7 * on_it, (before_it, on_it)
 
 
 def test_all_within_reach_reads_the_finest_level():
