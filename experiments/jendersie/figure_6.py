@@ -10,19 +10,22 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 import interreflect as ir
-from experiments.jendersie.pipeline import SMALL, compared, composition, difference, indirect
+from experiments.jendersie.pipeline import GRID, SMALL, compared, composition, difference, indirect
 from experiments.shared.panels import as_light, panels
 from experiments.shared.scenes import sunny_sponza
 
 OURS = "composition, setting 1"
+NEARER = "composition, rays to what is near"  # and pixels look before their surfaces
+RIVALS = ("voxel cones, grid of 128", "light propagation, grid of 32")
 REFERENCE = ir.Reference(noise=2e-3, max_spp=512)
 
 
 def ways() -> dict[str, Any]:
     return {
         OURS: composition(),
-        "voxel cones, grid of 128": ir.methods.VoxelConeTracing().replace({"grid.resolution": 128}),
-        "light propagation, grid of 32": ir.methods.LightPropagationVolumes(),
+        NEARER: composition(link__near_rays=512, place_caches=ir.LightMap(texels=128, grid=GRID.replace(normal_offset=0.25))),
+        RIVALS[0]: ir.methods.VoxelConeTracing().replace({"grid.resolution": 128}),
+        RIVALS[1]: ir.methods.LightPropagationVolumes(),
     }
 
 

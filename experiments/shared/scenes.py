@@ -45,6 +45,16 @@ def sunny_phong_sponza() -> ir.Scene:
     return without_sky(load("sponza_crytek/phong30.toml"))
 
 
+def sunny_sibenik() -> ir.Scene:
+    """The cathedral of Sibenik by its sun and candles."""
+    return without_sky(load("sibenik/scene.toml"))
+
+
+def phong_sibenik() -> ir.Scene:
+    """The same with the Phong lobe of Jendersie et al. on every surface."""
+    return sunny_sibenik().replace(materials={"*": {"specular": (0.2, 0.2, 0.2), "lobe": "phong", "exponent": 30.0}})
+
+
 def glossy_sponza() -> ir.Scene:
     """The same with a polished floor and the roughness of its maps: for what is about reflections (no normal maps)."""
     return load("sponza_crytek/glossy.toml")

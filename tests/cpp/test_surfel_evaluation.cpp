@@ -38,6 +38,7 @@ GBuffer pixels(int count, std::uint32_t seed) {
         if (i % 5 == 4) continue;
         const bool charted = i % 3 == 0;
         g.position[i] = {random.uniform(), random.uniform(), charted ? 0.0f : random.uniform()};
+        if (i % 7 == 0) g.position[i] = vec3(2, 2, charted ? 0 : 2) * g.position[i] - vec3(0.5f, 0.5f, 0);  // beyond map and box
         g.geometric_normal[i] = charted ? vec3(0, 0, i % 2 == 0 ? 1 : -1) : direction(random);
         g.normal[i] = direction(random);
         g.albedo[i] = {random.uniform(), random.uniform(), random.uniform()};

@@ -95,10 +95,12 @@ HWY_INLINE Slots in_map(const LightMapSites& map, LaneMask mapped, Vector u, Vec
     u = hn::Sub(u, half), v = hn::Sub(v, half);
     const Vector left = hn::Floor(u), top = hn::Floor(v), across = hn::Sub(u, left), down = hn::Sub(v, top);
     const Index size = hn::Set(di, map.size), x0 = hn::ConvertTo(di, left), y0 = hn::ConvertTo(di, top);
-    // From the corner (-1, -1) on: look-ups reach half a texel beyond the map.
+    // From the corner (-1, -1) on: look-ups reach half a texel beyond the map; slivers' planes, as rounded, may reach further.
+    const Vector first = hn::Set(d, -1.0f), end = hn::Set(d, static_cast<float>(map.size));
+    const auto near_map = hn::And(hn::And(hn::Ge(left, first), hn::Ge(top, first)), hn::And(hn::Lt(left, end), hn::Lt(top, end)));
     const Index one = hn::Set(di, 1), square = hn::Add(hn::Mul(hn::Add(y0, one), hn::Add(size, one)), hn::Add(x0, one));
     Index texel[4] = {hn::Set(di, -1), hn::Set(di, -1), hn::Set(di, -1), hn::Set(di, -1)};
-    for_each_distinct(hn::RebindMask(di, mapped), square, [&](auto same, std::int32_t number) HWY_ATTR {
+    for_each_distinct(hn::RebindMask(di, hn::And(mapped, near_map)), square, [&](auto same, std::int32_t number) HWY_ATTR {
         for (int k = 0; k < 4; ++k) {
             const int x = number % (map.size + 1) - 1 + (k & 1), y = number / (map.size + 1) - 1 + (k >> 1);
             if (x < 0 || y < 0 || x >= map.size || y >= map.size) continue;

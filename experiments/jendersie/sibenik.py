@@ -1,0 +1,72 @@
+"""The paper's comparisons on another scene, the cathedral of Sibenik: ways to light it, bands of a glossy lobe, surfels against links."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from matplotlib.figure import Figure
+
+import interreflect as ir
+from experiments.jendersie import figure_6, figure_10
+from experiments.jendersie.pipeline import SMALL, Image, compared, composition, difference, indirect
+from experiments.shared.panels import as_light, groups
+from experiments.shared.scenes import phong_sibenik, sunny_sibenik
+
+REFERENCE = ir.Reference(noise=5e-3, max_spp=512)
+BANDS = (2, 4, 6, 8)
+CORNERS = tuple(figure_10.CELLS[i] for i in (0, 3, 12, 15))  # fewest and most of both
+
+
+def ways() -> dict[str, Any]:
+    return {**figure_6.ways(), "composition, setting 2": composition("setting 2")}
+
+
+def studies() -> Sequence[ir.Study]:
+    cells = [composition(place_surfels__surfels=surfels, link__links=links) for surfels, links in figure_10.CELLS]
+    bands = [composition(link__bands=count) for count in BANDS]
+    return [
+        compared("Sibenik, one bounce", list(ways().values()), at=sunny_sibenik(), size=SMALL, reference=REFERENCE),
+        compared("Sibenik, bands of a glossy lobe", bands, at=phong_sibenik(), size=SMALL, reference=REFERENCE),
+        compared("Sibenik, surfels and links", cells, at=sunny_sibenik(), size=SMALL, reference=REFERENCE),
+    ]
+
+
+def table(records: ir.Records, names: Sequence[Any]) -> pd.DataFrame:
+    """A row per way: of the indirect light `off`, relative, `energy` over the truth's, trimmed `relmse`, and `flip`."""
+    rows = {}
+    for i, name in enumerate(names):
+        truth, ours = np.asarray(records.truth(records[i])[1]), indirect(records, i)
+        rows[name] = {
+            "off": difference(ours, truth),
+            "energy": float(ir.metrics.energy_ratio(ours, truth)),
+            "relmse": records[i].metrics["indirect_trimmed_relmse"],
+            "flip": float(ir.metrics.flip(ours, truth)),
+        }
+    return pd.DataFrame.from_dict(rows, orient="index")
+
+
+def chart(one: ir.Records, glossy: ir.Records, cells: ir.Records) -> Figure:
+    corners = {f"{surfels // 1024}k surfels, {links} links": figure_10.CELLS.index((surfels, links)) for surfels, links in CORNERS}
+    return groups(
+        {
+            "one bounce": pictures(one, {name: i for i, name in enumerate(ways())}),
+            "exponent 30": pictures(glossy, {f"{count} bands": i for i, count in enumerate(BANDS)}),
+            "surfels and links": pictures(cells, corners),
+        },
+        columns=3,
+        width=3.6,
+    )
+
+
+def pictures(records: ir.Records, shown: dict[str, int]) -> list[tuple[str, Image]]:
+    """Of the records with these numbers, and of their truth."""
+    truth = np.asarray(records.truth(records[0])[1])
+    found = table(records, range(len(records)))
+    ours = [
+        (f"{name}: energy {found.loc[i, 'energy']:.2f}, FLIP {found.loc[i, 'flip']:.2f}", as_light(indirect(records, i), truth))
+        for name, i in shown.items()
+    ]
+    return [*ours, ("path-traced truth", as_light(truth, truth))]
