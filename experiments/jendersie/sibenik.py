@@ -1,4 +1,4 @@
-"""The paper's comparisons on another scene, the cathedral of Sibenik: ways to light it, bands of a glossy lobe, surfels against links."""
+"""Sibenik: The paper's comparisons in another building: ways to light it, bands of a glossy lobe, surfels against links."""
 
 from __future__ import annotations
 

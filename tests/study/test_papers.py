@@ -42,7 +42,7 @@ def stand_in(monkeypatch):
 
 def smaller(study):
     """The same question with few pixels and samples, and grids that take no time."""
-    less = {"grid.resolution": lambda n: n // 4, "texels": lambda n: n // 16, "frames": lambda n: min(n, 2)}
+    less = {"grid.resolution": lambda n: n // 4, "texels": lambda n: n // 16, "frames": lambda n: min(n, 16 + n // 64)}
     less |= {"distribute.caches": lambda n: n // 64, "fill.samples": lambda n: min(n, 4), "maps": lambda n: 1, "spp": lambda n: 4}
     less |= {"fill.resolution": lambda n: n // 4}
     less |= {"sample_lights.lights": lambda n: max(n // 16, 1), "map_size": lambda n: n // 8, "cluster_lights.splat_size": lambda n: n // 8}

@@ -13,6 +13,10 @@ namespace interreflect {
 
 inline constexpr std::uint32_t no_cache = std::numeric_limits<std::uint32_t>::max();
 inline constexpr int most_bands = 8;
+/// Of so many bands, in one channel.
+inline constexpr std::size_t coefficients_of(int bands) {
+    return static_cast<std::size_t>(bands) * static_cast<std::size_t>(bands);
+}
 
 inline constexpr std::uint32_t no_chart = std::numeric_limits<std::uint32_t>::max();
 

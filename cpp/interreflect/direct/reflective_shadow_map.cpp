@@ -39,8 +39,10 @@ struct PictureView {
 /// Rays through the centres of 4 x 4 texels, one by one.
 template <class View>
 void rays_of(const View& view, int x0, int y0, RayPacket& packet) {
-    for (int lane = 0; lane < RayPacket::width; ++lane)
-        packet.set(lane, view.ray(static_cast<float>(x0 + lane % 4) + 0.5f, static_cast<float>(y0 + lane / 4) + 0.5f));
+    for (int lane = 0; lane < RayPacket::width; ++lane) {
+        const int x = x0 + lane % 4, y = y0 + lane / 4;
+        packet.set(lane, view.ray(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f));
+    }
 }
 
 /// All around a point or spot light: texels of equal solid angle.

@@ -102,7 +102,7 @@ struct LinkSums {
 /// Even and odd links apart, as an addition waits for the one before.
 template <int count, bool packed>
 void sum_links(const CacheLinks& links, const NodeLight& light, std::size_t cache, float* colours) {
-    const auto each = static_cast<std::size_t>(links.bands * links.bands), all = static_cast<std::size_t>(links.per_cache);
+    const auto each = coefficients_of(links.bands), all = static_cast<std::size_t>(links.per_cache);
     const auto* coefficients = reinterpret_cast<const hwy::float16_t*>(links.coefficients.data()) + cache * all * each;
     const std::uint32_t* const node = links.node.data() + cache * all;
     const vec3* const value = light.value.data();

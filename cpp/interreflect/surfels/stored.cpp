@@ -119,7 +119,7 @@ void check_stored(const CacheLinks& links, const CacheSites& sites, const Cluste
          "links: links a cache or bands out of range");
     const bool cones = links.kind == CacheLinks::Kind::cones;
     const std::size_t count = links.caches * static_cast<std::size_t>(links.per_cache);
-    const std::size_t each = static_cast<std::size_t>(links.bands * links.bands);
+    const std::size_t each = coefficients_of(links.bands);
     need(links.per_cache == 0 || (cones ? links.cones.size() >= count + most_lanes
                                         : links.node.size() == count && links.coefficients.size() >= count * each + 64),
          "links: arrays of other lengths than " + std::to_string(count) + " links");

@@ -48,8 +48,9 @@ void LightView::rays(int x0, int y0, RayPacket& packet) const {
     RayPacket::Lanes* const directions[3] = {&packet.direction_x, &packet.direction_y, &packet.direction_z};
     const float width = static_cast<float>(size);
     for (int i = 0; i < lanes; ++i) {
-        column[i] = half_x * (2.0f * (static_cast<float>(x0 + i % 4) + 0.5f) / width - 1.0f);
-        row[i] = half_y * (2.0f * (static_cast<float>(y0 + i / 4) + 0.5f) / width - 1.0f);
+        const int x = x0 + i % 4, y = y0 + i / 4;
+        column[i] = half_x * (2.0f * (static_cast<float>(x) + 0.5f) / width - 1.0f);
+        row[i] = half_y * (2.0f * (static_cast<float>(y) + 0.5f) / width - 1.0f);
         packet.near[i] = 0.0f;
         packet.far[i] = std::numeric_limits<float>::infinity();
     }

@@ -152,7 +152,8 @@ class BodyShadows {
             set_direction(batch, i, pyramid.pose.direction_to_body(cone.direction));
             batch.limit[i] = glm::length(centre_[cone.node] - from) / domain.voxel_size;
         }
-        const ConeCounts done = march_cones(pyramid, bodies_.air(body), schedules_[static_cast<std::size_t>(body * classes + k)],
+        const ConeCounts done = march_cones(pyramid, bodies_.air(body),
+                                            schedules_[static_cast<std::size_t>(body) * classes + static_cast<std::size_t>(k)],
                                             static_cast<float>(technique_.cut_off), batch);
         for (int i = 0; i < batch.count; ++i)
             met[chosen[static_cast<std::size_t>(i)]].seen.add(vec3(batch.r[i], batch.g[i], batch.b[i]) * pyramid.scale,

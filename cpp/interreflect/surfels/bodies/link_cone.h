@@ -25,7 +25,7 @@ inline LinkCone cone_of(const CacheLinks& links, std::size_t i, const SurfelTree
         return {link.node, octahedral_direction({static_cast<float>(link.x) / 65535.0f, static_cast<float>(link.y) / 65535.0f}),
                 zonal_cone(0, from_half(link.one_less_cos))};
     }
-    const std::uint16_t* c = links.coefficients.data() + i * static_cast<std::size_t>(links.bands * links.bands);
+    const std::uint16_t* c = links.coefficients.data() + i * coefficients_of(links.bands);
     const vec3 towards(from_half(c[3]), from_half(c[1]), from_half(c[2]));
     const float length = glm::length(towards), constant = 0.5f / std::sqrt(pi);
     if (!(length > 0.0f)) return {};
@@ -47,7 +47,7 @@ inline void add_link(const CacheLinks& links, std::size_t i, const LinkCone& con
             add(k, y * zonal[static_cast<int>(std::sqrt(static_cast<float>(k) + 0.5f))]);
         });
     } else {
-        const std::uint16_t* c = links.coefficients.data() + i * static_cast<std::size_t>(links.bands * links.bands);
+        const std::uint16_t* c = links.coefficients.data() + i * coefficients_of(links.bands);
         for (int k = 0; k < bands * bands; ++k) add(k, from_half(c[k]) * links.unit);
     }
 }

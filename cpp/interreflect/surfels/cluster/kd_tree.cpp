@@ -22,7 +22,7 @@ class Halving {
         for (std::size_t i = 0; i < points_.size(); ++i)
             for (int k = 0; k < 3; ++k) {
                 points_[i][static_cast<std::size_t>(k)] = surfels.position[i][k] * place;
-                points_[i][static_cast<std::size_t>(k + 3)] = surfels.normal[i][k] * turn;
+                points_[i][static_cast<std::size_t>(k) + 3] = surfels.normal[i][k] * turn;
             }
         std::iota(order_.begin(), order_.end(), 0U);
         merges_.reserve(order_.size());

@@ -25,7 +25,7 @@ Beam beam_of(const ConeLink& link, const CacheLinks& links, const NodeLight& lig
 
 /// The first coefficient is the solid angle's times y_0; the next three point along the mean direction.
 Beam beam_of(std::size_t link, const CacheLinks& links, const NodeLight& light) {
-    const std::uint16_t* c = links.coefficients.data() + link * static_cast<std::size_t>(links.bands * links.bands);
+    const std::uint16_t* c = links.coefficients.data() + link * coefficients_of(links.bands);
     const vec3 towards(from_half(c[3]), from_half(c[1]), from_half(c[2]));
     const float length = glm::length(towards), constant = 0.5f / std::sqrt(pi);
     if (!(length > 0.0f)) return {};

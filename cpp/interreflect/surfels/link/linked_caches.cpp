@@ -25,7 +25,7 @@ float unit_of_links(const ClusteredSurfels& surfels, const LinkKnobs& knobs) {
 CacheLinks make_links(const LinkKnobs& knobs, CacheLinks::Kind kind, const CacheSites& sites, const ClusteredSurfels& surfels) {
     const bool cones = kind == CacheLinks::Kind::cones;
     const std::size_t count = sites.size() * static_cast<std::size_t>(knobs.links);
-    const std::size_t each = static_cast<std::size_t>(knobs.bands * knobs.bands);
+    const std::size_t each = coefficients_of(knobs.bands);
     const std::size_t bytes = cones ? sizeof(ConeLink) : sizeof(std::uint32_t) + each * sizeof(std::uint16_t);
     if (count > most_bytes / bytes)
         throw std::invalid_argument("links: " + std::to_string(sites.size()) + " caches with " + std::to_string(knobs.links) +

@@ -39,7 +39,7 @@ SharedCut shared_cut(LinkKnobs knobs, const CacheSites& sites, const ClusteredSu
 
 CacheLinks take_links(const ShLinks& technique, const SharedCut& cut) {
     CacheLinks links = like(cut.projected, technique);
-    const std::size_t all = most_bands * most_bands, few = static_cast<std::size_t>(technique.bands * technique.bands);
+    const std::size_t all = most_bands * most_bands, few = coefficients_of(technique.bands);
     const std::size_t count = cut.projected.node.size();
     links.node = Buffer<std::uint32_t>(count);
     std::ranges::copy(cut.projected.node, links.node.begin());

@@ -63,9 +63,9 @@ class PixelRays {
     }
 
   private:
+    RayPacket packet_;  // first: it is aligned to 64 bytes
     const Intersector& intersector_;
     PerReceiver& unseen_;
-    RayPacket packet_;
     int receiver_[RayPacket::width];
     int count_ = 0;
 };
