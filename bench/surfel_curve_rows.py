@@ -8,7 +8,8 @@ from collections.abc import Callable
 from typing import Any
 
 import interreflect as ir
-from bench.rows import Row
+from bench.rows import Row, within
+from bench.voxel_pipeline import measured
 from interreflect import stages
 
 ASKED = (1024, 8192, 65536, 262144, 1048576)
@@ -26,9 +27,11 @@ def rows(scene: ir.Scene) -> list[Row]:
         _, linking = spent(lambda t=tree: stages.link(way.link, sites, t, scene))
         whole, n = placing + clustering + linking, len(tree)
         note = f"{n} surfels: placed in {placing / 1e3:.2f} s, clustered in {clustering / 1e3:.2f} s, linked in {linking / 1e3:.2f} s"
-        most = whole if before is None else before[0] * grown(n) / grown(before[1])
-        target = "measured" if before is None else f"at most {most:.4g} ms, n log n of the row before"
-        found.append(Row(f"precomputation of {asked} surfels", whole, None, None, None, target, whole <= most, note=note))
+        name = f"precomputation of {asked} surfels"
+        if before is None:
+            found.append(measured(name, whole, note))
+        else:
+            found.append(within(name, whole, None, before[0] * grown(n) / grown(before[1]), note=note))
         before = (whole, n)
     return found
 

@@ -6,12 +6,11 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-import pandas as pd
 from matplotlib.figure import Figure
 
 import interreflect as ir
 from experiments.jendersie import figure_6, figure_10
-from experiments.jendersie.pipeline import SMALL, Image, compared, composition, difference, indirect
+from experiments.jendersie.pipeline import SMALL, Image, compared, composition, indirect
 from experiments.shared.panels import as_light, groups
 from experiments.shared.scenes import phong_sibenik, sunny_sibenik
 
@@ -34,20 +33,6 @@ def studies() -> Sequence[ir.Study]:
     ]
 
 
-def table(records: ir.Records, names: Sequence[Any]) -> pd.DataFrame:
-    """A row per way: of the indirect light `off`, relative, `energy` over the truth's, trimmed `relmse`, and `flip`."""
-    rows = {}
-    for i, name in enumerate(names):
-        truth, ours = np.asarray(records.truth(records[i])[1]), indirect(records, i)
-        rows[name] = {
-            "off": difference(ours, truth),
-            "energy": float(ir.metrics.energy_ratio(ours, truth)),
-            "relmse": records[i].metrics["indirect_trimmed_relmse"],
-            "flip": float(ir.metrics.flip(ours, truth)),
-        }
-    return pd.DataFrame.from_dict(rows, orient="index")
-
-
 def chart(one: ir.Records, glossy: ir.Records, cells: ir.Records) -> Figure:
     corners = {f"{surfels // 1024}k surfels, {links} links": figure_10.CELLS.index((surfels, links)) for surfels, links in CORNERS}
     return groups(
@@ -64,9 +49,10 @@ def chart(one: ir.Records, glossy: ir.Records, cells: ir.Records) -> Figure:
 def pictures(records: ir.Records, shown: dict[str, int]) -> list[tuple[str, Image]]:
     """Of the records with these numbers, and of their truth."""
     truth = np.asarray(records.truth(records[0])[1])
-    found = table(records, range(len(records)))
-    ours = [
-        (f"{name}: energy {found.loc[i, 'energy']:.2f}, FLIP {found.loc[i, 'flip']:.2f}", as_light(indirect(records, i), truth))
-        for name, i in shown.items()
-    ]
-    return [*ours, ("path-traced truth", as_light(truth, truth))]
+
+    def panel(name: str, i: int) -> tuple[str, Image]:
+        ours = indirect(records, i)
+        energy, flip = ir.metrics.energy_ratio(ours, truth), ir.metrics.flip(ours, truth)
+        return f"{name}: energy {energy:.2f}, FLIP {flip:.2f}", as_light(ours, truth)
+
+    return [*(panel(name, i) for name, i in shown.items()), ("path-traced truth", as_light(truth, truth))]

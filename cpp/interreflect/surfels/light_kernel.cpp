@@ -63,8 +63,8 @@ void StoreCache(LightCaches& caches, std::size_t cache, const float* red, const 
     }
 }
 
-/// Sums of a colour each, `count` vectors of coefficients. Apart from arrays with an index that is found at run time, which g++
-/// leaves in memory: a store and a load then lie between two additions.
+/// Sums of a colour each, `count` vectors of coefficients, in registers: arrays whose index is found at run time g++ leaves in
+/// memory, so that a store and a load lie between two additions.
 template <int count>
 struct LinkSums {
     Vector red[count], green[count], blue[count];

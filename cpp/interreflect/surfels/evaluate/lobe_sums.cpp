@@ -136,7 +136,7 @@ class Shared {
                 const std::uint32_t cache = numbers_[k * NearCaches::length + first];
                 const auto wanted = hn::Set(Number(), cache);
                 const auto same_in = [&](int slot) HWY_ATTR { return hn::RebindMask(d, hn::Eq(cache_[slot], wanted)); };
-                if (hn::AllFalse(d, hn::AndNot(same_in(k), uses))) {  // in one cell, slots have nothing in common
+                if (hn::AllFalse(d, hn::AndNot(same_in(k), uses))) {  // in one cell slots hardly ever share a cache
                     take(cache, weight_[k]);
                     break;
                 }

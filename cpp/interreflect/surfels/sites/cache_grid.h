@@ -12,7 +12,7 @@ namespace interreflect {
 /// precomputed linkage, but it is not necessary to illuminate and use all of them" [6]. Pixels read the level that reaches them
 /// from the camera, and between four fifths of a level's reach and its end the next one as well; surfels of further bounces read
 /// the coarsest. Pixels look a quarter of a cell before their surfaces, so that caches behind a wall count less (Cornell box,
-/// 12^3 cells: relMSE .41 to .17; Sponza: .58 to .63 of the light); from half a cell on light comes into dark corners.
+/// 12 x 8 x 12 cells: relMSE .41 to .17; Sponza: .58 to .63 of the light); from half a cell on light comes into dark corners.
 struct CacheGrid {
     int nx = 24;
     int ny = 8;
