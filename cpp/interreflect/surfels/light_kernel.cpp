@@ -99,7 +99,7 @@ struct LinkSums {
     }
 };
 
-/// Even and odd links apart, as an addition waits for the one before.
+/// Even and odd links apart where that is few vectors, as an addition waits for the one before.
 template <int count, bool packed>
 void sum_links(const CacheLinks& links, const NodeLight& light, std::size_t cache, float* colours) {
     const auto each = coefficients_of(links.bands), all = static_cast<std::size_t>(links.per_cache);
@@ -108,10 +108,11 @@ void sum_links(const CacheLinks& links, const NodeLight& light, std::size_t cach
     const vec3* const value = light.value.data();
     const auto sent = [&](std::size_t k) { return packed ? light.at(node[k]) : value[node[k]]; };
     LinkSums<count> even, odd;
+    constexpr bool apart = count <= 2;  // more sums than that find no room in sixteen registers
     std::size_t k = 0;
     for (; k + 2 <= all; k += 2) {
         even.add(coefficients + k * each, sent(k));
-        odd.add(coefficients + (k + 1) * each, sent(k + 1));
+        (apart ? odd : even).add(coefficients + (k + 1) * each, sent(k + 1));
     }
     if (k < all) even.add(coefficients + k * each, sent(k));
     even.add(odd);
