@@ -125,6 +125,16 @@ void bind_direct(py::module_& m) {
     bind_shadow<ShadowMap>(m);
     py::class_<ShadowMaps, std::shared_ptr<ShadowMaps>>(m, "ShadowMaps",
                                                         "Depth seen from all point, spot and directional lights.")
+        .def_property_readonly(
+            "depth",
+            [](const py::object& self) {
+                py::list found;
+                for (const DepthMaps& light : self.cast<const ShadowMaps&>().lights)
+                    for (const DepthMap& map : light.maps)
+                        found.append(image_view(map.depth, map.view.size, map.view.size, self));
+                return py::tuple(found);
+            },
+            "(size, size) of each map, six for a point light: distance along the texel's ray, infinite where nothing is met.")
         .def_readonly("counts", &ShadowMaps::counts)
         .def_property_readonly("bytes", &ShadowMaps::bytes);
     m.def(

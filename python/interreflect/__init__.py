@@ -44,6 +44,7 @@ _HOMES = {
     "marginal": "study.marginal",
     "advise": "study.advise",
     "report": "study.report",
+    "view": "live.server",
     "about": "machine",  # not a module of that name: importing it would put the module in the function's place
 }
 _MODULES = ("methods", "scenes", "metrics", "charts", "stability")
@@ -89,6 +90,7 @@ if TYPE_CHECKING:
     from interreflect.cubes import voxel_view as voxel_view
     from interreflect.errors import SceneError as SceneError
     from interreflect.frame import Frame as Frame
+    from interreflect.live.server import view as view
     from interreflect.machine import about as about
     from interreflect.methods.pieces import Pieces as Pieces
     from interreflect.motion import Motion as Motion

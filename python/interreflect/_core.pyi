@@ -1598,6 +1598,12 @@ class ShadowMaps:
     @property
     def counts(self) -> Counts:
         ...
+
+    @property
+    def depth(self) -> tuple[typing.Any, ...]:
+        """
+        (size, size) of each map, six for a point light: distance along the texel's ray, infinite where nothing is met.
+        """
 class ReflectiveShadowMap:
     """
     What a light sees, and the flux that every texel's surface sends on: (size, size[, 3]) views.

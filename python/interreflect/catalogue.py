@@ -30,7 +30,7 @@ def scene_rows() -> list[Row]:
             limits = described.get(knob.name)
             if limits:
                 kind = "choice" if limits.choices else type(knob.default).__name__
-                rows.append(("", knob.name, kind, limits.unit, _range(limits), default, limits.doc))
+                rows.append(("", knob.name, kind, limits.unit, range_of(limits), default, limits.doc))
             else:
                 rows.append(("", knob.name, str(knob.annotation), "", "", default, _line_about(function, knob.name)))
     return rows
@@ -48,7 +48,7 @@ def method_rows() -> list[Row]:
             limits = field.metadata.get("range")
             if isinstance(limits, Range):
                 kind = "choice" if limits.choices else str(field.type)
-                rows.append(("", field.name, kind, limits.unit, _range(limits), repr(field.default), limits.doc))
+                rows.append(("", field.name, kind, limits.unit, range_of(limits), repr(field.default), limits.doc))
             else:
                 rows.append(("", field.name, "technique", "", "", repr(field.default), _choices_of(field.name)))
                 if not _choices_of(field.name):  # no stage lists its knobs
@@ -84,6 +84,16 @@ def find_scene(name: str) -> Any:
     if not Path(name).suffix and not Path(name).exists():
         raise ValueError(f"there is no built-in scene {name!r}{_nearest(name, dir(scenes))}; a scene file has an extension")
     return load_scene(name)
+
+
+def scene_code(name: str) -> str:
+    """The Python expression for what `find_scene` finds by this name."""
+    from interreflect import scenes
+
+    head = name.partition("(")[0]
+    if head not in dir(scenes):
+        return f"ir.load_scene({name!r})"
+    return f"ir.scenes.{name if '(' in name else f'{name}()'}"
 
 
 def find_method(name: str) -> Any:
@@ -181,7 +191,8 @@ def _choices_of(stage: str) -> str:
     return "one of " + ", ".join(technique.__name__ for technique in _core.stages[stage]["techniques"])
 
 
-def _range(limits: Any) -> str:
+def range_of(limits: Any) -> str:
+    """What a method's plain knob may be: choices or an interval."""
     if limits.choices:
         return ", ".join(limits.choices)
     low = "(" if limits.open_minimum else "["

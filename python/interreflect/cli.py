@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -72,17 +72,51 @@ def render(
     output: Annotated[Path, typer.Option("-o", "--output", help="an image file; .exr and .hdr keep linear light")] = Path("frame.exr"),
 ) -> None:
     """Render one picture and say where the time went."""
-    from interreflect.catalogue import find_method, find_scene, parse_knobs, parse_size
+    from interreflect.catalogue import find_scene, parse_size
 
     world = find_scene(scene)
-    plain = find_method(method)
-    chosen = (plain if preset is None else type(plain).preset(preset)).replace(parse_knobs(set_ or []))
+    chosen = _method(method, preset, set_)
     for warning in world.warnings:
         print(f"warning: {warning}", file=sys.stderr)
     frame = chosen.render(world, camera=camera, size=parse_size(size), seed=seed, threads=threads)
     frame.save(output)
     print(frame.profile)
     print(f"wrote {output}")
+
+
+@app.command()
+def view(
+    scene: Annotated[str, typer.Argument(help="a scene file, or the name of a built-in scene")],
+    method: Annotated[str, typer.Option(help="the method to begin with, as `interreflect methods` lists them")] = "voxel-cone-tracing",
+    preset: Annotated[str | None, typer.Option(help="a paper's configuration of the method, by name; --set changes it")] = None,
+    set_: Annotated[list[str] | None, typer.Option("--set", help="a knob: path=value, e.g. grid.resolution=64; repeatable")] = None,
+    camera: Annotated[str | None, typer.Option(help="a camera's name; the scene's first if absent")] = None,
+    lines: Annotated[int, typer.Option(help="height of the picture in pixels")] = 270,
+    host: Annotated[str, typer.Option(help="the address to listen on; only this machine reaches the default")] = "127.0.0.1",
+    port: Annotated[int, typer.Option(help="the port to listen on, or the next free one")] = 8080,
+    threads: Annotated[int | None, typer.Option(help="threads; all if absent")] = None,
+) -> None:
+    """Open a page in which to fly through a scene, turn knobs and compare with the truth, until Ctrl-C."""
+    from interreflect.catalogue import find_scene, scene_code
+    from interreflect.live.server import view as open_view
+
+    world = find_scene(scene)
+    for warning in world.warnings:
+        print(f"warning: {warning}", file=sys.stderr)
+    chosen = _method(method, preset, set_)
+    with open_view(
+        world, chosen, camera, lines=lines, host=host, port=port, threads=threads, scene_code=scene_code(scene)
+    ) as page, suppress(KeyboardInterrupt):  # fmt: skip
+        print(f"{page.address}  (Ctrl-C ends it)", flush=True)
+        page.wait()
+
+
+def _method(name: str, preset: str | None, settings: list[str] | None) -> Any:
+    """A method by name, as a preset has it, with what `--set` changes."""
+    from interreflect.catalogue import find_method, parse_knobs
+
+    plain = find_method(name)
+    return (plain if preset is None else type(plain).preset(preset)).replace(parse_knobs(settings or []))
 
 
 @app.command()

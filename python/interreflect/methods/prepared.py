@@ -50,9 +50,10 @@ class Prepared:
         threads: int | None = None,
         scene: Scene | None = None,
         history: Any = None,
+        profile: Profile | None = None,
     ) -> Frame:
         """The next frame. scene: the same scene with moved bodies or other lights, for IlluminanceComposition also with other emission.
-        history: the last frame's.
+        history: the last frame's. profile: to be filled, one that also keeps what stages make; None: a plain one.
 
         ValueError for a scene of other geometry or materials, an unknown camera, a size or seed out of range.
         """
@@ -63,7 +64,7 @@ class Prepared:
             raise ValueError(f"seed must lie in [0, 2^32), got {seed}")
         place = camera_of(shown, camera)
         view = View(shown, place, place.size if size is None else checked_size(size), seed, self.state, history)
-        profile = Profile()
+        profile = Profile() if profile is None else profile
         profile.precompute_milliseconds = self.precompute_milliseconds
         with _core.Threads(threads if threads is not None else self.threads):
             _ = shown.core  # a scene that was never rendered builds its hierarchy outside the frame's clock

@@ -145,8 +145,8 @@ def converge(
         spp = min(max(halves[0].spp, FIRST_SPP), largest - halves[0].spp)
         if spp > 0:
             for index, half in enumerate(halves):
-                half.add(render(spp, _stream(seed, index, half.rounds)), spp)
-        truth = _merge(halves[0], halves[1], key)
+                half.add(render(spp, stream_seed(seed, index, half.rounds)), spp)
+        truth = merged(halves[0], halves[1], key)
         if after_round is not None:
             after_round(halves, truth)
         if truth.noise <= wanted.noise or halves[0].spp >= largest:
@@ -174,12 +174,13 @@ class Half:
         self.rounds += 1
 
 
-def _stream(seed: int, half: int, round: int) -> int:
+def stream_seed(seed: int, half: int, round: int) -> int:
     """A seed of 31 bits for one render; hashed, lest a study's own seeds 0, 1, 2 meet the truth's streams."""
     return int.from_bytes(hashlib.blake2b(f"reference {seed} {half} {round}".encode(), digest_size=4).digest()) >> 1
 
 
-def _merge(a: Half, b: Half, key: str) -> Truth:
+def merged(a: Half, b: Half, key: str) -> Truth:
+    """The truth of two halves with as many samples each."""
     direct, indirect = (a.direct + b.direct) / 2, (a.indirect + b.indirect) / 2
     image_a, image_b = a.direct + a.indirect, b.direct + b.indirect
     return Truth(
