@@ -8,7 +8,7 @@ import interreflect as ir
 from interreflect import methods
 from interreflect.live.export import camera_code, method_code, program
 from interreflect.live.knobs import knobs_of, method_of, walk, with_technique
-from interreflect.live.widgets import slider_step
+from interreflect.live.widgets import marks, slider_step
 
 CLASSES = [getattr(methods, name) for name in dir(methods)]
 CONFIGURATIONS = [(cls, preset) for cls in CLASSES for preset in (None, *cls.presets)]
@@ -105,4 +105,16 @@ def test_an_exported_program_runs_and_writes_the_picture(tmp_path, monkeypatch):
     assert names["frame"].image.shape == (12, 16, 3)
     assert (tmp_path / "frame.exr").exists()
     found = eval(camera_code(camera), {"ir": ir})
-    assert found.position == pytest.approx(camera.position, rel=1e-5)  # six digits
+    assert found.position == pytest.approx(camera.position, abs=1e-5)  # six digits
+
+
+def test_an_exported_camera_holds_six_digits_and_no_dust():
+    camera = ir.Camera(position=(-1200.123456, 200.0, -1e-14), target=(0.0, 0.0, 0.0), up=(-1.8e-16, 1.0, 0.0), fov_x=47.26189)
+    assert camera_code(camera) == "ir.Camera(position=(-1200.12, 200.0, 0.0), target=(0.0, 0.0, 0.0), up=(0.0, 1.0, 0.0), fov_x=47.2619)"
+
+
+def test_a_papers_value_is_a_mark_on_the_slider_that_hides_no_other():
+    shown = marks(knob(ir.methods.VoxelConeTracing(), "march.step"))
+    assert shown == ((0.1, "0.1"), (2.0, "2"), (0.5, "0.5"))
+    shown = marks(knob(ir.methods.VoxelConeTracing(), "march.first_diameter"))  # .75 of [.25, 8] lies beside the end
+    assert shown == ((0.25, "0.25"), (8.0, "8"), 0.75)

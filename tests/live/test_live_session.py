@@ -108,11 +108,11 @@ def test_shadow_maps_hold_the_distance_to_what_the_light_meets():
 
 def test_sheets_lie_beside_each_other_and_open_texels_are_black():
     near, far = np.full((4, 4), 1, np.float32), np.full((4, 4), 2, np.float32)
-    near[0, 0], far[:] = 10, np.inf
+    near[0, 0], near[1, 1], far[:] = 10, 5.5, np.inf
     sheet = sheets.depth_sheet([near, far], (8, 4))
     assert sheet.shape == (4, 8, 3)
     assert (sheet[:, 4:] == 0).all()
-    assert sheet[0, 0, 0] == round(255 * 0.1) and sheet[3, 3, 0] == round(255 * 0.91)
+    assert [sheet[place] for place in ((0, 0, 0), (1, 1, 0), (3, 3, 0))] == [round(255 * 0.1), round(255 * 0.55), 255]
 
 
 def test_dots_stand_where_points_project_unless_something_hides_them():

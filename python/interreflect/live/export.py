@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import dataclasses
+import math
+from collections.abc import Sequence
 from typing import Any
 
 from interreflect.methods.knobs import is_technique
@@ -36,13 +38,14 @@ def method_code(method: Method, preset: str | None = None) -> str:
 
 
 def camera_code(camera: Camera) -> str:
-    """An expression for the camera, lengths and angles in six digits."""
-    vectors = {name: tuple(_short(x) for x in getattr(camera, name)) for name in ("position", "target", "up")}
-    return _call("ir.Camera", {**vectors, "fov_x": _short(camera.fov_x)}, broken=False)
+    """An expression for the camera; lengths and angles in six digits, of a vector's longest component."""
+    vectors = {name: _short(getattr(camera, name)) for name in ("position", "target", "up")}
+    return _call("ir.Camera", {**vectors, "fov_x": _short((camera.fov_x,))[0]}, broken=False)
 
 
-def _short(number: float) -> float:
-    return float(f"{number:.6g}")
+def _short(vector: Sequence[float]) -> tuple[float, ...]:
+    digits = 5 - math.floor(math.log10(max(abs(x) for x in vector) or 1.0))
+    return tuple(round(x, digits) + 0.0 for x in vector)  # no -0.0
 
 
 def _code(value: Any) -> str:

@@ -69,7 +69,9 @@ def _caches(seen: Seen, exposure: float) -> Bytes:
     background = light(seen.frame.image, exposure)
     places = seen.first("distribute")
     if isinstance(places, _core.CachePlaces):
-        return _bytes(cluster_view(places, (background / 255).astype(np.float32)))
+        x, y = places.screen.astype(int).T
+        points.mark(background, x, y)
+        return background
     sites = seen.prepared.state.get("sites") or seen.first("place_caches")
     if sites is None:
         raise _nothing(seen, "caches")

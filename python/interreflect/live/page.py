@@ -110,12 +110,13 @@ class Page:
         self._panel = KnobPanel(gui, gui.add_folder(None), method, self._turned)
 
     def _build_truth(self, gui: Any) -> None:
-        self._bind(gui.add_checkbox("refine the truth", False, hint="by path tracing, while the camera rests"), "refines")
+        self._refines = gui.add_checkbox("refine the truth", False, hint="by path tracing, while the camera rests")
+        self._bind(self._refines, "refines")
         self._comparison = gui.add_dropdown("show", COMPARISONS)
-        self._bind(self._comparison, "comparison")
+        self._comparison.on_update(lambda event: self._compare(event.target.value))
         flip = gui.add_button("Flip between method and truth")
         flip.on_click(lambda _: self._flip())
-        bounces = gui.add_dropdown("bounces", ("method", "all"), hint="of the truth: as many as the method aims at, or all")
+        bounces = gui.add_dropdown("truth's bounces", ("method", "all"), hint="of the truth: as many as the method aims at, or all")
         self._bind(bounces, "truth_bounces")
         self._errors = gui.add_html(tables.errors(None))
 
@@ -129,6 +130,12 @@ class Page:
 
     def _flip(self) -> None:
         self._comparison.value = "method" if self._comparison.value == "truth" else "truth"
+
+    def _compare(self, comparison: str) -> None:
+        """There is nothing to compare with before a truth refines."""
+        self._change(comparison=comparison)
+        if comparison != "method":
+            self._refines.value = True
 
     def _choose_method(self, cls: type[Method]) -> None:
         self._paper.options = (DEFAULTS, *cls.presets)

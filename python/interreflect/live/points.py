@@ -13,6 +13,7 @@ from interreflect.scenes.camera import Camera
 
 Bytes = NDArray[np.uint8]
 BEHIND = 1.02  # a point farther than the surface by this factor is hidden by it
+DENSE = 100  # pixels that a dot has to itself, from which on it is larger than one
 CANDIDATES = 4  # nearest surfels of which a pixel takes the first that faces as it does
 CLUSTERS = 256  # that surfels are drawn in, about
 GREY = np.array([0.75, 0.75, 0.75], np.float32)
@@ -23,15 +24,20 @@ def dots(background: Bytes, position: NDArray[np.float32], depth: NDArray[np.flo
     height, width = depth.shape
     picture = background.copy()
     x, y, distance = project(position, camera, (width, height))
-    reach = max(0, round(width / 600))
     seen = (x >= 0) & (x < width) & (y >= 0) & (y < height) & (distance > 0)
     x, y, distance = x[seen].astype(int), y[seen].astype(int), distance[seen]
     shown = distance <= BEHIND * depth[y, x]
+    mark(picture, x[shown], y[shown])
+    return picture
+
+
+def mark(picture: Bytes, x: NDArray[np.int64], y: NDArray[np.int64]) -> None:
+    """Squares of about a three-hundredth of the picture's width; single pixels where there are many."""
+    height, width = picture.shape[:2]
+    reach = max(0, round(width / 600)) if len(x) * DENSE < width * height else 0
     for down in range(-reach, reach + 1):
         for right in range(-reach, reach + 1):
-            rows, columns = np.clip(y[shown] + down, 0, height - 1), np.clip(x[shown] + right, 0, width - 1)
-            picture[rows, columns] = np.round(255 * np.array(DOT)).astype(np.uint8)
-    return picture
+            picture[np.clip(y + down, 0, height - 1), np.clip(x + right, 0, width - 1)] = np.round(255 * np.array(DOT)).astype(np.uint8)
 
 
 def project(position: NDArray[np.float32], camera: Camera, size: tuple[int, int]) -> tuple[NDArray[Any], NDArray[Any], NDArray[Any]]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import io
 import threading
+import warnings
 from html import escape
 from typing import Any
 
@@ -69,7 +70,8 @@ class LiveView:
         if not self._closed.is_set():
             self._closed.set()
             self._renderer.stop()
-            self._server.stop()
+            with contextlib.redirect_stdout(io.StringIO()):  # it says so
+                self._server.stop()
 
     def wait(self) -> None:
         """Returns when another thread closes the view, or with KeyboardInterrupt."""
@@ -107,6 +109,8 @@ def _serve(host: str, port: int, scene: Scene) -> Any:
         import viser
     except ImportError as missing:
         raise ImportError("the live view needs viser, which comes with the extra `view`: pip install 'interreflect[view]'") from missing
+    # A client may leave while its picture is made.
+    warnings.filterwarnings("ignore", "Queued a .* on a closed connection", UserWarning)
     with contextlib.redirect_stdout(io.StringIO()):  # it announces itself
         server = viser.ViserServer(host=host, port=port, label=scene.name or "interreflect", verbose=False)
     # A tunnel would open the page to the world, whoever asks for it.

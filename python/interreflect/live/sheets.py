@@ -13,12 +13,12 @@ MOST = 64  # maps on a sheet
 
 
 def depth_sheet(depths: Sequence[Floats], size: tuple[int, int]) -> Bytes:
-    """The first maps of distances: near is bright, each map's farthest is dark, black is open."""
+    """The first maps of distances: each map's nearest is white, its farthest dark, black is open."""
     tiles = []
     for depth in depths[:MOST]:
         met = np.isfinite(depth)
-        far = float(depth[met].max(initial=0.0)) or 1.0
-        grey = np.where(met, 1 - 0.9 * np.where(met, depth, 0) / far, 0)
+        near, far = (float(depth[met].min()), float(depth[met].max())) if met.any() else (0.0, 1.0)
+        grey = np.where(met, 1 - 0.9 * (np.where(met, depth, near) - near) / max(far - near, 1e-30), 0)
         tiles.append(np.round(255 * np.repeat(grey[..., None], 3, 2)).astype(np.uint8))
     return _sheet(tiles, size)
 

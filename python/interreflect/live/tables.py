@@ -35,7 +35,7 @@ def problem(words: str) -> str:
 def stages(profile: Profile) -> str:
     """A row per stage: milliseconds, MiB that its result holds, and the work it did."""
     rows = "".join(
-        f'<tr><td style="{CELL}">{_words(name)}</td><td style="{NUMBER}">{stage.milliseconds:.1f}</td>'
+        f'<tr><td style="{CELL}; white-space: nowrap">{_words(name)}</td><td style="{NUMBER}">{stage.milliseconds:.1f}</td>'
         f'<td style="{NUMBER}">{stage.bytes / 2**20:.1f}</td><td style="{CELL}; opacity: 0.7">{_work(stage)}</td></tr>'
         for name, stage in profile.stages.items()
     )

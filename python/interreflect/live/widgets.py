@@ -10,6 +10,7 @@ from interreflect.catalogue import parse_value
 from interreflect.live.knobs import Knob, knobs_of, method_of, walk, with_technique
 from interreflect.methods.method import Method
 
+APART = 0.15  # of a slider's length, between numbers beneath it
 MOST_STEPS = 256  # whole numbers a slider can tell apart; knobs of more, or without an end, are typed
 
 
@@ -80,7 +81,7 @@ class KnobPanel:
             widget = self._gui.add_text(label, str(knob.value), hint=knob.hint)
         elif (step := slider_step(knob)) is not None:
             ends = (knob.minimum, knob.maximum) if knob.kind == "number" else (int(knob.minimum or 0), int(knob.maximum or 0))
-            widget = self._gui.add_slider(label, *ends, step, knob.value, hint=knob.hint)
+            widget = self._gui.add_slider(label, *ends, step, knob.value, marks=marks(knob), hint=knob.hint)
         else:
             widget = self._gui.add_number(label, knob.value, step=1 if knob.kind == "integer" else None, hint=knob.hint)
         widget.on_update(lambda event: self._turn(event, knob))
@@ -92,6 +93,20 @@ class KnobPanel:
         value = event.target.value
         self.values = {**self.values, knob.path: parse_value(value) if knob.kind == "text" else value}
         self._changed()
+
+
+def marks(knob: Knob) -> tuple[Any, ...]:
+    """A slider's ends and its papers' values; those that would lie over another's number are dots alone."""
+    low, high = knob.minimum or 0.0, knob.maximum or 0.0
+    found: list[Any] = [(low, f"{low:g}"), (high, f"{high:g}")]
+    numbered = [low, high]
+    for value in sorted({value for _, value in knob.papers} - {low, high}):
+        if min(abs(value - other) for other in numbered) > APART * (high - low):
+            numbered.append(value)
+            found.append((value, f"{value:g}"))
+        else:
+            found.append(value)
+    return tuple(found)
 
 
 def slider_step(knob: Knob) -> float | int | None:
