@@ -41,6 +41,9 @@ def test_a_papers_value_stands_only_at_the_technique_that_the_paper_uses():
     one = knob(ir.methods.VoxelConeTracing(), "share.width")  # the papers share nothing between pixels
     assert one.papers == ()
     assert knob(ir.methods.VoxelConeTracing(), "share").papers[0] == ("Freed 2018", "EveryPixel")
+    freed = ir.methods.VoxelConeTracing.preset("Freed 2018")  # ShadowMap has samples too, but those are not the ones of TracedShadows
+    assert "Freed 2018" in dict(knob(freed, "shadow.samples").papers)
+    assert "Freed 2018" not in dict(knob(ir.methods.VoxelConeTracing(shadow=ir.TracedShadows()), "shadow.samples").papers)
 
 
 def test_another_technique_brings_its_own_knobs():

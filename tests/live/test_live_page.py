@@ -3,7 +3,10 @@
 import io
 import re
 import shutil
+import signal
 import socket
+import subprocess
+import sys
 import threading
 import urllib.request
 
@@ -172,7 +175,7 @@ def test_the_truth_refines_while_the_camera_rests(visit):
     tab(page, "Truth")
     knob(page, "refine the truth").check()
     page.get_by_text(re.compile(r"truth: \d\d+ paths a pixel")).wait_for()
-    page.get_by_text(re.compile(r"FLIP 0\.\d+")).wait_for()
+    page.get_by_text(re.compile(r"FLIP 0\.\d+ \(at")).wait_for()
     choose(page, "show", "error map")
     wait_for_change(page, before)
 
@@ -213,6 +216,34 @@ def test_a_notebook_shows_the_page_and_closing_ends_it():
     assert not waiting.is_alive()
     with pytest.raises(OSError):
         urllib.request.urlopen(view.address)
+
+
+def test_a_scene_without_cameras_is_seen_by_one_of_ones_own(browser):
+    scene = ir.scenes.cornell_box(light="point")
+    with ir.view(scene.replace(cameras={}), ir.methods.AmbientOcclusion(), scene.camera, lines=LINES, port=free_port()) as view:
+        page = browser.new_page(viewport={"width": 800, "height": 480})
+        page.goto(view.address)
+        page.locator("b", has_text="ambient-occlusion").wait_for(timeout=PATIENCE)
+        assert knob(page, "camera").input_value() == "as it began"
+        page.close()
+
+
+def test_the_command_serves_until_it_is_interrupted():
+    port = free_port()
+    run = "from interreflect.cli import main; main()"
+    command = [sys.executable, "-c", run, "view", "cornell_box", "--port", str(port), "--set", "grid.resolution=8"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as started:
+        assert started.stdout.readline().startswith(f"http://127.0.0.1:{port} ")
+        assert urllib.request.urlopen(f"http://127.0.0.1:{port}").status == 200
+        started.send_signal(signal.SIGINT)
+        _, complaints = started.communicate(timeout=30)
+    assert (started.returncode, complaints) == (0, "")
+
+
+def test_without_the_extra_it_says_what_to_install(monkeypatch):
+    monkeypatch.setitem(sys.modules, "viser", None)
+    with pytest.raises(ImportError, match=r"pip install 'interreflect\[view\]'"):
+        ir.view(ir.scenes.cornell_box())
 
 
 def test_what_cannot_be_viewed_is_refused():

@@ -118,7 +118,7 @@ def test_sheets_lie_beside_each_other_and_open_texels_are_black():
 def test_dots_stand_where_points_project_unless_something_hides_them():
     camera = ir.Camera(position=(0, 0, 0), target=(0, 0, -1), fov_x=90)
     depth = np.full((50, 100), 10, np.float32)
-    position = np.array([[0.01, -0.01, -5], [-2.45, -0.01, -5], [0, 0, -20], [0, 0, 5]], np.float32)
+    position = np.array([[0.01, -0.01, -5], [-2.45, -0.01, -5], [4.9, 0, -20], [1, 0, 5]], np.float32)
     picture = points.dots(np.zeros((50, 100, 3), np.uint8), position, depth, camera)
     assert sorted(map(tuple, np.argwhere(picture.any(-1)))) == [(25, 25), (25, 50)]  # half of tan 45 to the left, and the centre
 
@@ -141,14 +141,18 @@ def test_a_setting_that_cannot_be_rendered_leaves_the_last_picture(session, monk
 
 
 def test_frames_follow_each_other_on_their_history_only_when_they_play(shared, scene):
-    blended = VOXELS.replace(light_voxels=ir.BlendHistory(light_voxels=ir.TracedLighting(), weight=0.5))
-    session = Session(shared, Wish(blended, scene.camera, SIZE))
+    gathering = VOXELS.replace(light_voxels=ir.Bounces())  # a bounce more with every frame
+    session = Session(shared, Wish(gathering, scene.camera, SIZE))
     first = session.step().seen
     assert not session.is_stale
     session.change(plays=True)
     assert session.is_stale
     second = session.step().seen
-    assert session.is_stale and second is not first and second.frame.history is not None
+    assert session.is_stale and second is not first
+    known = shared.prepared(gathering).render(scene.camera, size=SIZE, seed=1, history=first.frame.history)
+    alone = shared.prepared(gathering).render(scene.camera, size=SIZE, seed=1)
+    np.testing.assert_array_equal(second.frame.indirect, known.indirect)
+    assert known.indirect.mean() > 1.01 * alone.indirect.mean()
 
 
 def test_the_truth_refines_to_that_of_the_reference(scene):
@@ -179,7 +183,10 @@ def test_errors_are_those_of_the_metrics_and_flip_follows_in_a_turn_of_its_own(s
     assert measured.errors.relmse == pytest.approx(metrics.relmse(frame.image, truth.image))
     assert measured.errors.flip.value == pytest.approx(metrics.flip(frame.image, truth.image))
     session.change(layer="indirect")
-    assert session.step().errors.relmse == pytest.approx(metrics.relmse(frame.indirect, truth.indirect))
+    other = session.step().errors
+    assert other.relmse == pytest.approx(metrics.relmse(frame.indirect, truth.indirect))
+    assert other.flip is None  # that of the image is not that of the indirect light
+    assert session.refine().errors.flip.value == pytest.approx(metrics.flip(frame.indirect, truth.indirect))
 
 
 def test_comparisons_show_truth_errors_and_both(session):
@@ -267,8 +274,46 @@ def test_clients_take_turns_and_one_that_fails_stops_nobody(shared, scene):
         renderer.stop()
 
 
+def test_two_that_play_get_as_many_pictures(shared, scene):
+    shown = {1: [], 2: []}
+    renderer = Renderer()
+    try:
+        for number, pictures in shown.items():
+            session = Session(shared, Wish(VOXELS, scene.camera, SIZE, plays=True))
+            renderer.add(number, Client(session, pictures.append, pytest.fail, lambda: None))
+        wait_for(lambda: min(map(len, shown.values())) >= 3)
+    finally:
+        renderer.stop()
+
+
+def test_the_methods_used_last_stay_ready(scene):
+    shared = Shared(scene)
+    methods = [VOXELS.replace({"grid.resolution": 4 + k}) for k in range(5)]
+    ready = [shared.prepared(method) for method in methods]
+    assert [shared.is_ready(method) for method in methods] == [False, False, True, True, True]
+    assert shared.prepared(methods[2]) is ready[2]
+    shared.prepared(methods[0])
+    assert shared.is_ready(methods[2]) and not shared.is_ready(methods[3])
+
+
 def wait_for(true):
     end = time.monotonic() + 30
     while not true():
         assert time.monotonic() < end
         time.sleep(0.01)
+
+
+def test_an_end_does_not_wait_for_a_long_preparation(shared, scene, monkeypatch):
+    monkeypatch.setattr("interreflect.live.renderer.MOST_SECONDS", 0.1)
+    begun, go_on, shown = threading.Event(), threading.Event(), []
+    session = Session(shared, Wish(VOXELS, scene.camera, SIZE))
+    monkeypatch.setattr(session, "step", lambda: (begun.set(), go_on.wait(30)))
+    renderer = Renderer()
+    renderer.add(1, Client(session, shown.append, shown.append, lambda: None))
+    assert begun.wait(30)
+    start = time.monotonic()
+    renderer.stop()
+    assert time.monotonic() - start < 10
+    go_on.set()
+    renderer._thread.join(30)
+    assert shown == [] and not renderer._thread.is_alive()

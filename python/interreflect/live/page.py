@@ -36,6 +36,7 @@ class Page:
         self._preset: str | None = None
         self._sent: Bytes | None = None
         self._seen: Seen | None = None
+        self._times = ""  # of that frame, in words
         self._build()
         self._fly_to(session.wish.camera)
         client.camera.on_update(lambda _: self._moved())
@@ -44,9 +45,10 @@ class Page:
         sending = self._send(picture.pixels)
         if picture.seen is not self._seen:
             self._seen = picture.seen
-            self._status.content = tables.status(picture, sending)
+            self._times = tables.times(picture, sending)
             self._stages.content = tables.stages(picture.seen.frame.profile)
             self._code.content = tables.code(self._program())
+        self._status.content = tables.status(self._times, picture.errors)
         self._problem.content = ""
         self._errors.content = tables.errors(picture.errors)
 
@@ -91,14 +93,19 @@ class Page:
         self._bind(exposure, "exposure")
         lines = gui.add_dropdown("lines", tuple(sorted({*LINES, str(self._lines)}, key=int)), initial_value=str(self._lines))
         lines.on_update(lambda event: self._set_lines(event))
-        cameras = self._session.shared.scene.cameras
-        camera = gui.add_dropdown("camera", tuple(cameras), hint="fly to a camera of the scene")
+        cameras = {"as it began": wish.camera, **self._session.shared.scene.cameras}
+        camera = gui.add_dropdown("camera", tuple(cameras), initial_value=self._camera_name(), hint="fly to a camera of the scene")
         camera.on_update(lambda event: None if event.client is None else self._fly_to(cameras[event.target.value]))
         again = gui.add_button("Back to the camera")
         again.on_click(lambda _: self._fly_to(cameras[camera.value]))
         self._bind(gui.add_checkbox("play", False, hint="frame after frame also at rest, each on the history of the one before"), "plays")
         self._stages = gui.add_html("")
         gui.add_html(f'<div style="{tables.SMALL}; opacity: 0.7">{WORDS}</div>')
+
+    def _camera_name(self) -> str:
+        """Of the camera that the page begins with."""
+        known = self._session.shared.scene.cameras.items()
+        return next((name for name, camera in known if camera == self._session.wish.camera), "as it began")
 
     def _build_method(self, gui: Any) -> None:
         method = self._session.wish.method

@@ -11,6 +11,8 @@ from interreflect.live.session import Picture, Session
 
 EXPECTED = (ValueError, TypeError, MemoryError, ImportError, OSError)  # what settings may lead to; all else is a fault of ours
 
+MOST_SECONDS = 2.0  # that an end waits for the picture at work
+
 
 @dataclass(frozen=True, eq=False)
 class Client:
@@ -48,11 +50,12 @@ class Renderer:
             self._changed.notify()
 
     def stop(self) -> None:
-        """Returns when the picture at work is done."""
+        """Nothing is shown any more. A preparation at work goes on by itself: it may take minutes, and nobody waits for it here."""
         with self._changed:
             self._stopped = True
+            self._clients.clear()
             self._changed.notify()
-        self._thread.join()
+        self._thread.join(MOST_SECONDS)
 
     def _run(self) -> None:
         while (turn := self._next()) is not None:

@@ -66,7 +66,7 @@ class LiveView:
         self.address = f"http://{shown}:{self._server.get_port()}"
 
     def close(self) -> None:
-        """Ends the page; what is being rendered is finished first."""
+        """Ends the page."""
         if not self._closed.is_set():
             self._closed.set()
             self._renderer.stop()

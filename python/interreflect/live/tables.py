@@ -13,12 +13,20 @@ CELL = "padding: 0.05em 0.4em 0.05em 0; vertical-align: top"
 NUMBER = f"{CELL}; text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap"
 
 
-def status(picture: Picture, sending: float) -> str:
+def status(times: str, found: Errors | None) -> str:
+    """What every tab shows: times, and the error where a truth is there."""
+    if found is None:
+        return _block(times)
+    flip = "" if found.flip is None else f", FLIP {found.flip.value:.3f}"
+    return _block(f"{times}<br>relMSE {found.relmse:.2e}{flip} against {found.spp} paths a pixel")
+
+
+def times(picture: Picture, sending: float) -> str:
     """Which method took how long. sending: milliseconds that it took to encode the picture and hand it to the network."""
     seen, profile = picture.seen, picture.seen.frame.profile
     whole = profile.milliseconds + picture.milliseconds + sending
     width, height = seen.size
-    return _block(
+    return (
         f"<b>{escape(seen.prepared.method.name)}</b>, {width} x {height}<br>frame {profile.milliseconds:.0f} ms, drawn "
         f"{picture.milliseconds:.0f} ms, sent {sending:.0f} ms: {1e3 / whole:.1f} a second"
     )
@@ -51,7 +59,22 @@ def errors(found: Errors | None) -> str:
     flip = "..." if found.flip is None else f"<b>{found.flip.value:.3f}</b> (at {found.flip.spp} paths)"
     return _block(
         f"relMSE <b>{found.relmse:.2e}</b><br>FLIP {flip}<br>truth: {found.spp} paths a pixel, noise {found.noise:.1e}{bound}"
-        "<br>Error map: relative squared error of a pixel, 1e-4 black to 1 white."
+        f"<br>Error map: relative squared error of a pixel.{_ramp()}"
+    )
+
+
+def _ramp() -> str:
+    """The colours of error maps, from the least error they tell to the largest."""
+    from matplotlib import colormaps
+
+    from interreflect.charts import ERROR_RANGE
+
+    colours = ", ".join("rgb({:.0f} {:.0f} {:.0f})".format(*(255 * colormaps["magma"](k / 8)[c] for c in range(3))) for k in range(9))
+    low, high = ERROR_RANGE
+    ends = f'<span>{low:g}</span><span>{high:g}</span>'
+    return (
+        f'<div style="height: 0.8em; margin-top: 0.3em; background: linear-gradient(to right, {colours})"></div>'
+        f'<div style="display: flex; justify-content: space-between">{ends}</div>'
     )
 
 
