@@ -1,9 +1,11 @@
 /// What this machine can do at most: bandwidths, arithmetic, rays.
 #include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
 
 #include "bindings/rooms.h"
 #include "bindings/run.h"
 #include "math/throughput.h"
+#include "math/vector_target.h"
 #include "visibility/ray_rate.h"
 
 namespace interreflect::bindings {
@@ -23,7 +25,10 @@ void bind_calibration(py::module_& m) {
     m.def(
         "cone_step_rate", [](int repeats) { return run([&] { return cone_step_rate(repeats); }); }, py::arg("repeats"),
         "Million steps of cones a second, each two trilinear look-ups in a pyramid of half floats; best of `repeats`.");
-    m.def("vector_bytes", &vector_bytes, "Bytes of the widest vectors of this machine.");
+    m.def("vector_bytes", &vector_bytes, "Bytes of the vectors that kernels run on.");
+    m.def("vector_target", &vector_target,
+          "What kernels run on: sse4, avx2 or avx512; the environment's INTERREFLECT_VECTORS forces one.");
+    m.def("vector_targets", &vector_targets, "What kernels can run on here, narrowest first.");
     m.def(
         "ray_rates",
         [](int repeats) {

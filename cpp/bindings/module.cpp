@@ -1,8 +1,11 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <cstdlib>
+
 #include "bindings/rooms.h"
 #include "bindings/run.h"
+#include "math/vector_target.h"
 #include "sources_digest.h"
 
 namespace py = pybind11;
@@ -13,9 +16,21 @@ namespace {
 struct Threads {
     int limit = 0, before = 0;
 };
+
+/// Before any kernel runs, so that all of them run on the same target.
+void choose_vectors() {
+    const char* name = std::getenv("INTERREFLECT_VECTORS");
+    if (name == nullptr) return;
+    try {
+        interreflect::force_vector_target(name);
+    } catch (const std::invalid_argument& problem) {
+        throw py::import_error(std::string("INTERREFLECT_VECTORS ") + problem.what());
+    }
+}
 }  // namespace
 
 PYBIND11_MODULE(_core, m) {
+    choose_vectors();
     m.doc() = "The core of Interreflect: stages on plain data.";
     m.attr("stages") = py::dict();
     m.def(

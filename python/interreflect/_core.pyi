@@ -4202,7 +4202,15 @@ def used_caches(sites: CacheSites, gbuffer: GBuffer) -> numpy.typing.NDArray[num
     """
 def vector_bytes() -> int:
     """
-    Bytes of the widest vectors of this machine.
+    Bytes of the vectors that kernels run on.
+    """
+def vector_target() -> str:
+    """
+    What kernels run on: sse4, avx2 or avx512; the environment's INTERREFLECT_VECTORS forces one.
+    """
+def vector_targets() -> list[str]:
+    """
+    What kernels can run on here, narrowest first.
     """
 def voxelize(technique: ExactOverlap | SurfaceSampling | Rasterization | Tessellation, scene: Scene, domain: Domain, body: typing.SupportsInt | typing.SupportsIndex | None=None, pose: typing.Any | None=None) -> VoxelGrid:
     """

@@ -27,7 +27,8 @@ class About:
     processor: str
     cores: int  # of the threads below; hyper-threads of one core count once
     threads: int
-    vector_bits: int  # of the widest vectors that the core uses here; 0: unknown
+    vectors: str  # what the core's kernels run on: sse4, avx2 or avx512; the environment's INTERREFLECT_VECTORS forces one
+    vector_bits: int  # of those vectors; 0: unknown
     memory_bytes: int
     system: str
     compiler: str
@@ -44,7 +45,7 @@ class About:
         return [
             ("interreflect", f"{self.version}, commit {self.commit}"),
             ("processor", f"{self.processor}, {self.cores} cores, {self.threads} threads, {self.memory_bytes / 2**30:.1f} GiB"),
-            ("vectors", f"{self.vector_bits} bits" if self.vector_bits else UNKNOWN),
+            ("vectors", f"{self.vectors}, {self.vector_bits} bits" if self.vector_bits else UNKNOWN),
             ("system", self.system),
             ("compiler", self.compiler),
             *build,
@@ -64,13 +65,15 @@ class About:
 def about() -> About:
     """What this process runs on; asked once a process."""
     build = _build_info()
+    vectors, vector_bits = _vectors()
     return About(
         version=_version("interreflect") or str(build.get("version", UNKNOWN)),
         commit=_commit() or str(build.get("commit") or UNKNOWN),
         processor=_processor(),
         cores=_cores(),
         threads=len(os.sched_getaffinity(0)),
-        vector_bits=_vector_bits(),
+        vectors=vectors,
+        vector_bits=vector_bits,
         memory_bytes=os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES"),
         system=platform.platform(),
         compiler=str(build.get("compiler", UNKNOWN)),
@@ -82,11 +85,10 @@ def about() -> About:
 
 def _build_info() -> dict[str, Any]:
     try:
-        from interreflect import _core
-    except ImportError:
+        import interreflect._core as core
+    except ModuleNotFoundError:
         return {}
-    info = getattr(_core, "build_info", {})
-    return dict(info() if callable(info) else info)
+    return dict(core.build_info)
 
 
 def _version(distribution: str) -> str | None:
@@ -111,12 +113,12 @@ def _cores() -> int:
     return len(shared)
 
 
-def _vector_bits() -> int:
+def _vectors() -> tuple[str, int]:
     try:
-        from interreflect import _core
-    except ImportError:
-        return 0
-    return 8 * _core.vector_bytes()
+        import interreflect._core as core
+    except ModuleNotFoundError:
+        return UNKNOWN, 0
+    return core.vector_target(), 8 * core.vector_bytes()
 
 
 def _commit() -> str:

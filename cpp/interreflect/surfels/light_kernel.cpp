@@ -15,6 +15,7 @@
 #include <hwy/highway.h>
 // clang-format on
 
+#include "math/half_lanes-inl.h"
 #include "math/lanes-inl.h"
 #include "surfels/cone_lanes-inl.h"
 
@@ -28,7 +29,6 @@ namespace hn = hwy::HWY_NAMESPACE;
 /// Writes a cache as half floats.
 void StoreCache(LightCaches& caches, std::size_t cache, const float* red, const float* green, const float* blue) {
     const Tag d;
-    const hn::Rebind<hwy::float16_t, Tag> half;
     constexpr int lanes = static_cast<int>(hn::MaxLanes(d));
     const int luma = caches.luma(), chrominance = caches.chrominance();
     alignas(64) float values[3][64];
@@ -57,7 +57,8 @@ void StoreCache(LightCaches& caches, std::size_t cache, const float* red, const 
         const int count = c == 0 ? luma : chrominance;
         alignas(64) hwy::float16_t halves[64];
         for (int k = 0; k < count; k += lanes)
-            hn::Store(hn::DemoteTo(half, hn::Mul(hn::Load(d, values[c] + k), inverse)), half, halves + k);
+            hn::Store(nearest_halves(d, hn::Mul(hn::Load(d, values[c] + k), inverse)), hn::Rebind<hwy::float16_t, Tag>(),
+                      halves + k);
         std::memcpy(to, halves, static_cast<std::size_t>(count) * sizeof(hwy::float16_t));
         to += count;
     }

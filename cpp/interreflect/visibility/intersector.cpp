@@ -103,10 +103,15 @@ static_assert(sizeof(RTCRayHit16) == sizeof(RayPacket) && offsetof(RTCRayHit16, 
               offsetof(RTCRayHit16, hit.primID) == offsetof(RayPacket, triangle) &&
               offsetof(RTCRayHit16, hit.instID) == offsetof(RayPacket, instance));
 
-/// Whether packets of 16 run as such; elsewhere they run as two of 8.
-bool native_16() {
-    static const bool native = rtcGetDeviceProperty(ray_device(), RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED) != 0;
-    return native;
+/// The widest packets that run as such, in lanes. The library takes wider ones, but of those it traces lanes that are not valid
+/// too.
+int native_lanes() {
+    static const int lanes = [] {
+        const auto has = [](RTCDeviceProperty property) { return rtcGetDeviceProperty(ray_device(), property) != 0; };
+        if (has(RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED)) return 16;
+        return has(RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED) ? 8 : 4;
+    }();
+    return lanes;
 }
 
 struct alignas(64) ValidLanes {
@@ -116,45 +121,47 @@ struct alignas(64) ValidLanes {
     }
 };
 
-/// Lanes [8 half, 8 half + 8) of `wide` arrays of 16 as arrays of 8, and back: a packet is rows of lanes, 4 bytes each.
-template <std::size_t rows>
-void split_rows(const void* wide, void* narrow, int half) {
-    for (std::size_t row = 0; row < rows; ++row)
-        std::memcpy(static_cast<char*>(narrow) + row * 32, static_cast<const char*>(wide) + row * 64 + half * 32, 32);
-}
-template <std::size_t rows>
-void join_rows(const void* narrow, void* wide, int half) {
-    for (std::size_t row = 0; row < rows; ++row)
-        std::memcpy(static_cast<char*>(wide) + row * 64 + half * 32, static_cast<const char*>(narrow) + row * 32, 32);
+/// Calls with pieces of so many lanes, one after the other: a packet is rows of sixteen lanes, a piece of it rows of fewer.
+template <int lanes, class Piece, class Call>
+void in_pieces(const ValidLanes& valid, RayPacket& packet, const Call& call) {
+    constexpr std::size_t bytes = sizeof(float) * lanes, rows = sizeof(Piece) / bytes;
+    for (int first = 0; first < RayPacket::width; first += lanes) {
+        Piece piece;
+        auto* wide = reinterpret_cast<char*>(&packet) + sizeof(float) * static_cast<std::size_t>(first);
+        auto* narrow = reinterpret_cast<char*>(&piece);
+        for (std::size_t row = 0; row < rows; ++row)
+            std::memcpy(narrow + row * bytes, wide + row * sizeof(float) * RayPacket::width, bytes);
+        alignas(32) int mask[lanes];
+        std::memcpy(mask, valid.lane + first, sizeof(mask));
+        call(mask, &piece);
+        for (std::size_t row = 0; row < rows; ++row)
+            std::memcpy(wide + row * sizeof(float) * RayPacket::width, narrow + row * bytes, bytes);
+    }
 }
 
 void intersect_packet(RTCScene scene, RTCIntersectContext& context, const ValidLanes& valid, RayPacket& packet) {
-    if (native_16()) {
-        rtcIntersect16(valid.lane, scene, &context, reinterpret_cast<RTCRayHit16*>(&packet));
-        return;
-    }
-    for (const int half : {0, 1}) {
-        RTCRayHit8 narrow;
-        split_rows<sizeof(narrow) / 32>(&packet, &narrow, half);
-        alignas(32) int lanes[8];
-        std::memcpy(lanes, valid.lane + 8 * half, sizeof(lanes));
-        rtcIntersect8(lanes, scene, &context, &narrow);
-        join_rows<sizeof(narrow) / 32>(&narrow, &packet, half);
+    switch (native_lanes()) {
+        case 16:
+            return rtcIntersect16(valid.lane, scene, &context, reinterpret_cast<RTCRayHit16*>(&packet));
+        case 8:
+            return in_pieces<8, RTCRayHit8>(
+                valid, packet, [&](const int* mask, RTCRayHit8* piece) { rtcIntersect8(mask, scene, &context, piece); });
+        default:
+            return in_pieces<4, RTCRayHit4>(
+                valid, packet, [&](const int* mask, RTCRayHit4* piece) { rtcIntersect4(mask, scene, &context, piece); });
     }
 }
 
 void occlude_packet(RTCScene scene, RTCIntersectContext& context, const ValidLanes& valid, RayPacket& packet) {
-    if (native_16()) {
-        rtcOccluded16(valid.lane, scene, &context, reinterpret_cast<RTCRay16*>(&packet));
-        return;
-    }
-    for (const int half : {0, 1}) {
-        RTCRay8 narrow;
-        split_rows<sizeof(narrow) / 32>(&packet, &narrow, half);
-        alignas(32) int lanes[8];
-        std::memcpy(lanes, valid.lane + 8 * half, sizeof(lanes));
-        rtcOccluded8(lanes, scene, &context, &narrow);
-        join_rows<sizeof(narrow) / 32>(&narrow, &packet, half);
+    switch (native_lanes()) {
+        case 16:
+            return rtcOccluded16(valid.lane, scene, &context, reinterpret_cast<RTCRay16*>(&packet));
+        case 8:
+            return in_pieces<8, RTCRay8>(valid, packet,
+                                         [&](const int* mask, RTCRay8* piece) { rtcOccluded8(mask, scene, &context, piece); });
+        default:
+            return in_pieces<4, RTCRay4>(valid, packet,
+                                         [&](const int* mask, RTCRay4* piece) { rtcOccluded4(mask, scene, &context, piece); });
     }
 }
 

@@ -6,6 +6,7 @@
 #define INTERREFLECT_LEVELS_KERNEL
 #endif
 
+#include "math/half_lanes-inl.h"
 #include "voxels/prefilter/levels.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -20,7 +21,7 @@ HWY_INLINE V load(const std::uint16_t* texel) {
     return hn::PromoteTo(D(), hn::LoadU(H(), reinterpret_cast<const hwy::float16_t*>(texel)));
 }
 HWY_INLINE void store(V value, std::uint16_t* texel) {
-    hn::StoreU(hn::DemoteTo(H(), value), H(), reinterpret_cast<hwy::float16_t*>(texel));
+    hn::StoreU(nearest_halves(D(), value), H(), reinterpret_cast<hwy::float16_t*>(texel));
 }
 HWY_INLINE V alpha_of(V texel) { return hn::Broadcast<3>(texel); }
 
@@ -105,9 +106,18 @@ HWY_INLINE V composite(const V* texel, int face) {
     return hn::Mul(sum, hn::Set(d, 0.25f));
 }
 
+/// Three floats wherever they lie. MaskedLoad of SSE4 would read four of them, and only from multiples of 16 bytes.
+HWY_INLINE V load_three(const float* from) {
+#if HWY_TARGET == HWY_SSE4
+    alignas(16) const float padded[4] = {from[0], from[1], from[2], 0.0f};
+    return hn::Load(D(), padded);
+#else
+    return hn::MaskedLoad(hn::FirstN(D(), 3), D(), from);
+#endif
+}
 HWY_INLINE V premultiplied(const float* radiance, float opacity, float inverse_scale) {
     const D d;
-    const V rgb = hn::Mul(hn::MaskedLoad(hn::FirstN(d, 3), d, radiance), hn::Set(d, inverse_scale));
+    const V rgb = hn::Mul(load_three(radiance), hn::Set(d, inverse_scale));
     return hn::Mul(hn::InsertLane(rgb, 3, 1.0f), hn::Set(d, opacity));
 }
 

@@ -18,19 +18,19 @@ namespace {
 constexpr int octants_at_once = HWY_MAX_BYTES >= 64 ? 4 : HWY_MAX_BYTES >= 32 ? 2 : 1;
 using DO = hn::FixedTag<float, 4 * octants_at_once>;
 using VO = hn::Vec<DO>;
+using HO = hn::Rebind<hwy::float16_t, DO>;
 
 /// Octants [first, first + octants_at_once) of the texel at `texel` in the first volume, `volume` halves from one to the next.
 HWY_INLINE VO load_octants(const std::uint16_t* texel, std::size_t volume, int first) {
     if (texel == air) return hn::Zero(DO());
     const auto* from = reinterpret_cast<const hwy::float16_t*>(texel + static_cast<std::size_t>(first) * volume);
-    const hn::Rebind<hwy::float16_t, DO> half;
-    if (volume == 4) return hn::PromoteTo(DO(), hn::LoadU(half, from));
+    if (volume == 4) return hn::PromoteTo(DO(), hn::LoadU(HO(), from));
     const auto one = [&](std::size_t i) HWY_ATTR { return hn::LoadU(H(), from + i * volume); };
 #if HWY_MAX_BYTES >= 32
     const hn::FixedTag<hwy::float16_t, 8> h8;
     const auto pair = hn::Combine(h8, one(1), one(0));
 #if HWY_MAX_BYTES >= 64
-    return hn::PromoteTo(DO(), hn::Combine(half, hn::Combine(h8, one(3), one(2)), pair));
+    return hn::PromoteTo(DO(), hn::Combine(HO(), hn::Combine(h8, one(3), one(2)), pair));
 #else
     return hn::PromoteTo(DO(), pair);
 #endif
@@ -38,13 +38,14 @@ HWY_INLINE VO load_octants(const std::uint16_t* texel, std::size_t volume, int f
     return hn::PromoteTo(DO(), one(0));
 #endif
 }
-/// A packed texel is a cache line that is not read before all are written.
+/// A packed texel is a cache line that is not read before all are written. Past the cache go 16 bytes at the least.
 HWY_INLINE void store_octants(VO value, std::uint16_t* texel, std::size_t volume, int first) {
     alignas(64) std::uint16_t halves[4 * octants_at_once];
-    const hn::Rebind<hwy::float16_t, DO> half;
     std::uint16_t* out = texel + static_cast<std::size_t>(first) * volume;
-    if (volume == 4) return hn::Stream(hn::DemoteTo(half, value), half, reinterpret_cast<hwy::float16_t*>(out));
-    hn::Store(hn::DemoteTo(half, value), half, reinterpret_cast<hwy::float16_t*>(halves));
+#if HWY_MAX_BYTES >= 32
+    if (volume == 4) return hn::Stream(nearest_halves(DO(), value), HO(), reinterpret_cast<hwy::float16_t*>(out));
+#endif
+    hn::Store(nearest_halves(DO(), value), HO(), reinterpret_cast<hwy::float16_t*>(halves));
     for (std::size_t i = 0; i < octants_at_once; ++i) __builtin_memcpy(out + i * volume, halves + 4 * i, 4 * sizeof(*out));
 }
 
