@@ -167,6 +167,10 @@ def test_the_page_says_what_is_wrong_and_keeps_its_picture(visit):
     choose(page, "layer", "normals")
     wait_for_change(page, before)
     page.get_by_text("makes no surfels").wait_for(state="detached")
+    assert page.get_by_text("got 5000").is_visible()  # as long as the knob stands there
+    tab(page, "Method")
+    knob(page, "resolution (voxels)").fill("9")
+    page.get_by_text("got 5000").wait_for(state="detached")
 
 
 def test_the_truth_refines_while_the_camera_rests(visit):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 import time
 from collections.abc import Callable
 from typing import Any
@@ -33,7 +34,9 @@ class Page:
     def __init__(self, client: Any, session: Session, space: Space, lines: int, wake: Callable[[], None], scene_code: str) -> None:
         self._client, self._session, self._space, self._wake = client, session, space, wake
         self._lines, self._scene_code = lines, scene_code
+        self._lock = threading.Lock()  # the page reports from several threads
         self._preset: str | None = None
+        self._wrong = ""  # with the knobs as they stand
         self._sent: Bytes | None = None
         self._seen: Seen | None = None
         self._times = ""  # of that frame, in words
@@ -49,11 +52,12 @@ class Page:
             self._stages.content = tables.stages(picture.seen.frame.profile)
             self._code.content = tables.code(self._program())
         self._status.content = tables.status(self._times, picture.errors)
-        self._problem.content = ""
+        self.complain("")
         self._errors.content = tables.errors(picture.errors)
 
     def complain(self, words: str) -> None:
-        self._problem.content = tables.problem(words)
+        """What is wrong with the picture that was wished for, beside what is wrong with the knobs."""
+        self._problem.content = "".join(tables.problem(text) for text in (self._wrong, words) if text)
 
     def begin(self) -> None:
         method = self._session.wish.method
@@ -129,7 +133,12 @@ class Page:
 
     def _bind(self, widget: Any, wish: str) -> None:
         """The widget's value is the wish of that name."""
-        widget.on_update(lambda event: self._change(**{wish: event.target.value}))
+
+        def turned(event: Any) -> None:
+            with self._lock:
+                self._change(**{wish: event.target.value})
+
+        widget.on_update(turned)
 
     def _change(self, **changes: Any) -> None:
         self._session.change(**changes)
@@ -154,7 +163,7 @@ class Page:
         self._choose(cls() if name == DEFAULTS else cls.preset(name), None if name == DEFAULTS else name)
 
     def _choose(self, method: Method, preset: str | None) -> None:
-        self._preset = preset
+        self._preset, self._wrong = preset, ""
         self._panel.show(method)
         self._change(method=method)
 
@@ -162,9 +171,11 @@ class Page:
         try:
             method = self._panel.method()
         except (ValueError, TypeError) as error:
-            self.complain(f"{type(error).__name__}: {error}")
+            self._wrong = f"{type(error).__name__}: {error}"
+            self.complain("")
             return
-        self._problem.content = ""
+        self._wrong = ""
+        self.complain("")
         self._change(method=method)
 
     def _set_lines(self, event: Any) -> None:
@@ -173,11 +184,12 @@ class Page:
 
     def _moved(self) -> None:
         """The camera as the page has it."""
-        seen = self._client.camera
-        aspect = max(seen.aspect, 1e-2)
-        size = (max(16, min(4096, round(self._lines * aspect))), self._lines)
-        # The picture fills the page, so its own aspect counts and not that of its rounded size.
-        self._change(camera=self._space.camera(seen.position, seen.look_at, seen.wxyz, seen.fov, aspect, size), size=size)
+        with self._lock:
+            seen = self._client.camera
+            aspect = max(seen.aspect, 1e-2)
+            size = (max(16, min(4096, round(self._lines * aspect))), self._lines)
+            # The picture fills the page, so its own aspect counts and not that of its rounded size.
+            self._change(camera=self._space.camera(seen.position, seen.look_at, seen.wxyz, seen.fov, aspect, size), size=size)
 
     def _fly_to(self, camera: Camera) -> None:
         seen = self._client.camera

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import threading
 from collections.abc import Callable
 from typing import Any
 
@@ -15,26 +16,31 @@ MOST_STEPS = 256  # whole numbers a slider can tell apart; knobs of more, or wit
 
 
 class KnobPanel:
-    """The widgets of one method in a container of the page. `values` are as they stand there, whether or not they go together."""
+    """The widgets of one method in a container of the page. `values` are as they stand there, whether or not they go together.
+
+    changed: called when a value was turned. Widgets report from several threads, not always in order: what counts is what they hold.
+    """
 
     def __init__(self, gui: Any, container: Any, method: Method, changed: Callable[[], None]) -> None:
         self._gui, self._container, self._changed = gui, container, changed
         self._groups: dict[str, Any] = {}  # that hold a technique's folder, by the technique's path
         self._folders: dict[str, Any] = {}  # of its knobs
+        self._lock = threading.RLock()
         self._shown: list[Any] = []
         self.show(method)
 
     def show(self, method: Method) -> None:
         """The widgets of another method, or of other values."""
-        for widget in self._shown:
-            widget.remove()
-        self._shown.clear()
-        self._groups.clear()
-        self._folders.clear()
-        self.cls, self.values = type(method), method.knobs()
-        with self._container:
-            for knob in knobs_of(self.cls, self.values):
-                self._shown += self._add(knob)
+        with self._lock:
+            for widget in self._shown:
+                widget.remove()
+            self._shown.clear()
+            self._groups.clear()
+            self._folders.clear()
+            self.cls, self.values = type(method), method.knobs()
+            with self._container:
+                for knob in knobs_of(self.cls, self.values):
+                    self._shown += self._add(knob)
 
     def method(self) -> Method:
         """ValueError and TypeError where the values do not go together."""
@@ -55,7 +61,8 @@ class KnobPanel:
         """The knobs of a technique in place of those of the one before it."""
         before = self._folders.pop(knob.path, None)
         if before is not None:
-            before.remove()
+            before.remove()  # and with it the folders inside
+        self._folders = {path: folder for path, folder in self._folders.items() if not path.startswith(f"{knob.path}.")}
         if not knob.inner:
             return
         with self._groups[knob.path]:
@@ -67,9 +74,10 @@ class KnobPanel:
     def _choose(self, event: Any, path: str) -> None:
         if event.client is None:  # set by us
             return
-        self.values = with_technique(self.cls, self.values, path, event.target.value)
-        self._fill(next(knob for knob in walk(knobs_of(self.cls, self.values)) if knob.path == path))
-        self._changed()
+        with self._lock:
+            self.values = with_technique(self.cls, self.values, path, event.target.value)
+            self._fill(next(knob for knob in walk(knobs_of(self.cls, self.values)) if knob.path == path))
+            self._changed()
 
     def _plain(self, knob: Knob) -> Any:
         label = f"{knob.name} ({knob.unit})" if knob.unit else knob.name
@@ -90,9 +98,10 @@ class KnobPanel:
     def _turn(self, event: Any, knob: Knob) -> None:
         if event.client is None:  # set by us
             return
-        value = event.target.value
-        self.values = {**self.values, knob.path: parse_value(value) if knob.kind == "text" else value}
-        self._changed()
+        with self._lock:
+            value = event.target.value
+            self.values = {**self.values, knob.path: parse_value(value) if knob.kind == "text" else value}
+            self._changed()
 
 
 def marks(knob: Knob) -> tuple[Any, ...]:
