@@ -7,9 +7,11 @@ from __future__ import annotations
 
 import argparse
 import inspect
+import multiprocessing
 import os
 import subprocess
 import sys
+from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 from typing import Any
 
@@ -78,11 +80,21 @@ def listing(title: str, folder: str, names: list[str]) -> str:
 
 
 def draw(source: Source, names: dict[str, Any]) -> None:
-    for name in names:
-        if (curve := measured.curve_of(name)) is not None:
-            made_of = [measured.FOLDER / f"{name}.csv", Path(charts.__file__), Path(measured.__file__)]
-            if not source.keep_themes(f"charts/{name}", made_of):
-                charts.write(curve, source.folder / "charts" / name)
+    drawn_by = [Path(charts.__file__), Path(measured.__file__)]
+    curves = {source.folder / "charts" / name: curve for name in names if (curve := measured.curve_of(name)) is not None}
+    wanted = {
+        stem: curve
+        for stem, curve in curves.items()
+        if not source.keep_themes(f"charts/{stem.name}", [measured.FOLDER / f"{stem.name}.csv", *drawn_by])
+    }
+    with ProcessPoolExecutor(2, multiprocessing.get_context("spawn")) as pool:
+        waiting = [pool.submit(charts.write, curve, stem) for stem, curve in wanted.items()]
+        draw_methods_and_pictures(source, names)
+        for one in waiting:
+            one.result()
+
+
+def draw_methods_and_pictures(source: Source, names: dict[str, Any]) -> None:
     shown = {name: method_pages.setting_of(name) for name in method_names()}
     for name, setting in shown.items():
         if not source.keep_themes(f"pipelines/{name}", [Path(pipelines.__file__), Path(inspect.getfile(type(setting.method)))]):

@@ -1,21 +1,23 @@
 """The docs: what is written by hand is there and says what it must, every block of code runs, and every picture names its command."""
 
 import re
+import sys
 from pathlib import Path
 
 import pytest
 
 pytest.importorskip("sphinx", reason="needs the extra `docs`")
 
+from docs.generate import measured
 from docs.generate.failure_page import failure_page
 from docs.generate.method_pages import method_page
 from docs.generate.notes import FOLDER, KEYS, notes_of
-from docs.generate.settings import method_names, techniques
+from docs.generate.settings import main_knob, method_names, techniques
 from docs.generate.technique_pages import stage_page, technique_page
 
 from interreflect import _core
 
-DOCS = Path(__file__).parents[1] / "docs"
+ROOT = Path(__file__).parents[1]
 GENERATED = {
     **{name: lambda name=name: technique_page(techniques()[name]) for name in techniques()},
     **{stage: lambda stage=stage: stage_page(stage) for stage in _core.stages},
@@ -43,3 +45,36 @@ def test_every_note_is_of_something_that_exists():
         assert {path.stem for path in (FOLDER / kind).glob("*.md")} <= known[kind]
     assert all(notes_of("stages", stage).sentences for stage in _core.stages), "a stage's question"
     assert all(notes_of("methods", name).sentences for name in method_names())
+
+
+def test_every_technique_has_five_sentences():
+    """What goes in, what it does, what it approximates, what it costs, when to choose it: one a line of its notes."""
+    lacking = {name: len(notes_of("techniques", name).sentences) for name in techniques()}
+    assert {name: count for name, count in lacking.items() if count != 5} == {}
+    for name in techniques():
+        assert all(line[0].isupper() and line.endswith(".") for line in notes_of("techniques", name).sentences), name
+
+
+def test_every_technique_was_measured_or_says_why_not():
+    lacking = [name for name, cls in techniques().items() if main_knob(cls) and measured.curve_of(name) is None]
+    assert lacking == [], "measure them: .venv/bin/python -m docs.measure " + " ".join(lacking)
+    for name, cls in techniques().items():
+        if main_knob(cls) is None:
+            assert "unmeasured" in notes_of("techniques", name).head or not cls.description["params"], name
+
+
+def test_the_architecture_names_every_room_and_folder_as_they_are():
+    sys.path.insert(0, str(ROOT / "tests"))
+    from test_house import ABOVE
+
+    text = (ROOT / "docs" / "architecture.md").read_text()
+    rooms = dict(re.findall(r"^\| `(\w+)` \| .* \| (.*) \|$", text, re.MULTILINE))
+    told = {room: set(re.findall(r"`(\w+)`", above)) for room, above in rooms.items() if room in ABOVE}
+    assert told == ABOVE and set(ABOVE) == {path.name for path in (ROOT / "cpp" / "interreflect").iterdir() if path.is_dir()}
+    core = text.partition("## The package")[0]
+    assert set(re.findall(r"stages? ((?:`\w+`(?:, | and )?)+)", core)) and all(f"`{stage}`" in core for stage in _core.stages)
+    package = {path.parent.name for path in (ROOT / "python" / "interreflect").glob("*/__init__.py")}
+    folders = set(re.findall(r"^\| `(\w+)` \| [^|]* \|$", text.partition("## The package")[2], re.MULTILINE))
+    assert folders == package
+    outside = {"experiments", "bench", "notebooks", "tools", "docs", "tests"}
+    assert all((ROOT / name).is_dir() and f"`{name}`" in text for name in outside)

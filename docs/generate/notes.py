@@ -6,7 +6,7 @@
     ---
     One sentence a line.
 
-    ## Equation                   # and whatever else follows as it stands
+    ## Equation                   # with what the paper prints wrongly
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ KEYS = {
 
 @dataclasses.dataclass(frozen=True)
 class Notes:
-    """head: settings by name. sentences: one a line. rest: Markdown from the first heading on."""
+    """head: settings by name. sentences: one a line. rest: the equation, Markdown."""
 
     head: dict[str, Any]
     sentences: tuple[str, ...]
@@ -46,5 +46,5 @@ def notes_of(kind: str, name: str) -> Notes:
     settings = yaml.safe_load(head) or {}
     if wrong := set(settings) - KEYS[kind]:
         raise ValueError(f"{path}: no such setting: {', '.join(sorted(wrong))}; there are {', '.join(sorted(KEYS[kind]))}")
-    text, mark, rest = body.strip().partition("\n## ")
-    return Notes(settings, tuple(line for line in text.splitlines() if line), f"{mark.strip()} {rest}".strip())
+    text, _, rest = body.strip().partition("\n## Equation\n")
+    return Notes(settings, tuple(line for line in text.splitlines() if line), rest.strip())

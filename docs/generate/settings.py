@@ -32,8 +32,12 @@ class Setting:
     def scene(self) -> ir.Scene:
         return find_scene(self.scene_name)
 
+    def path_of(self, knob: str) -> str:
+        """Of a knob of the technique; a dotted one is another stage's."""
+        return knob if "." in knob else f"{self.path}.{knob}"
+
     def replace(self, knob: str, value: Any) -> Setting:
-        return dataclasses.replace(self, method=self.method.replace({f"{self.path}.{knob}": value}))
+        return dataclasses.replace(self, method=self.method.replace({self.path_of(knob): value}))
 
     def render(self, prepared: Any, size: tuple[int, int] = SIZE, seed: int = 0) -> Frame:
         frame = None
@@ -43,8 +47,8 @@ class Setting:
         assert frame is not None
         return frame
 
-    def truth(self, size: tuple[int, int] = SIZE) -> Any:
-        return ir.reference(self.scene, self.camera, size, bounces=self.method.bounces, noise=TRUTH.noise, max_spp=TRUTH.max_spp)
+    def truth(self, size: tuple[int, int] = SIZE, wanted: ir.Reference = TRUTH) -> Any:
+        return ir.reference(self.scene, self.camera, size, bounces=self.method.bounces, noise=wanted.noise, max_spp=wanted.max_spp)
 
 
 def method_names() -> list[str]:

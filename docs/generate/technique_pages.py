@@ -52,7 +52,7 @@ def told(setting: Setting) -> str:
 
 def code(technique: Any, setting: Setting) -> str:
     knob = main_knob(technique)
-    given = f"{knob[0]}={getattr(technique(), knob[0])!r}" if knob else ""
+    given = f"{knob[0]}={getattr(technique(), knob[0])!r}" if knob and "." not in knob[0] else ""
     method = f"ir.methods.{type(setting.method).__name__}()"
     lines = (
         "import interreflect as ir",
