@@ -50,6 +50,7 @@ PAGES = {
         "ir.sensitivity(method, scene, ": "ir.sensitivity(ir.methods.ConstantAmbient(), scene, ",
         "ir.advise(scene)": "ir.advise(scene, size=(32, 18))",
     },
+    "live_view": {"lines=270": "lines=24"},
     "studies_at_scale": {"tcp://10.0.0.1:8786": "{address}"},
 }
 TRIANGLES = "v -1 0 -1\nv 1 0 -1\nv 1 0 1\nv -1 0 1\nf 1 3 2\nf 1 4 3\n"
@@ -136,6 +137,13 @@ def test_the_scene_on_the_page_of_the_format_loads_and_renders(tmp_path, monkeyp
     (tmp_path / "floor.obj").write_text(TRIANGLES)
     names = run_each_statement(code_of("scene_format"), {})
     assert names["scene"].triangles == 4 and len(names["scene"].lights) == 2 and names["frame"].image.mean() > 0
+
+
+def test_the_live_view_of_its_page_opens_and_closes():
+    pytest.importorskip("viser", reason="needs the extra `view`")
+    box = ir.scenes.cornell_box()
+    names = run_each_statement(code_of("live_view"), {"ir": ir, "scene": box.replace(cameras={"front": next(iter(box.cameras.values()))})})
+    assert names["page"].address.startswith("http://")
 
 
 def test_studies_at_scale_run_on_a_cluster_of_this_machine(tmp_path, monkeypatch):
