@@ -1,4 +1,4 @@
-"""5.4: Freed's open questions: directional voxels, curved grids, light shared between pixels."""
+"""5.4: Freed's open questions: directional voxels, curved grids, sparse storage, light shared between pixels."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ NAMES = (
     "isotropic, volume coverage",
     "isotropic, surface coverage",
     "six faces",
+    "six faces, in bricks",
     "spherical harmonics",
     "spherical frustum",
     "nested grids, 64 twice",
@@ -31,6 +32,7 @@ def ways() -> list[ir.methods.VoxelConeTracing]:
         {},
         {"prefilter": ir.SurfaceCoverage()},
         {"prefilter": ir.Anisotropic()},
+        {"prefilter": ir.Anisotropic(dense_limit=0)},
         {"prefilter": ir.SphericalHarmonicVoxels()},
         {"grid.warp": ir.Spherical()},
         {"grid": ir.Grid(resolution=64, cascades=2)},

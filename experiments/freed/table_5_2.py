@@ -14,6 +14,10 @@ from experiments.shared.panels import table_figure
 RESOLUTIONS = (64, 128, 256)
 RASTERIZED, TESSELLATED, CLOSED = "rasterized, 4 samples", "tessellated as printed", "tessellated, no holes"
 
+# Milliseconds on a GTX 970, rows as ours.
+GTX_970 = {RASTERIZED: (0.53, 0.85, 1.91), TESSELLATED: (0.70, 1.12, 2.35)}
+PAPER_PRINTS = "in the table's last two columns: milliseconds on a GTX 970"
+
 
 def studies() -> Sequence[ir.Study]:
     """Small pictures: voxelizing does not depend on their size."""
@@ -31,5 +35,8 @@ def table(records: ir.Records) -> pd.DataFrame:
 
 
 def chart(records: ir.Records) -> Figure:
-    shown = table(records).rename(index=lambda n: f"{n}^3").rename(columns=lambda name: name.replace(", ", ",\n"))
+    ours = table(records)
+    both = pd.concat({"ours": ours, "GTX 970": pd.DataFrame(GTX_970, RESOLUTIONS)}, axis=1)
+    heads = [(*name.split(", "), machine) for machine, name in both.columns]
+    shown = both.rename(index=lambda n: f"{n}^3").set_axis(["\n".join(head) for head in heads], axis=1)
     return table_figure(shown, "milliseconds to voxelize Sponza (medians)")

@@ -18,6 +18,8 @@ SIZE = (640, 360)
 CAR_GRID = ir.CacheGrid(nx=32, ny=12, nz=20, normal_offset=0.0)  # the car is a body: it is lit by the grid
 SAMPLES = ir.TracedSky(samples=64, filter_radius=2)
 
+PAPER_PRINTS = "Sponza 5.7 ms (245k triangles, 10k caches, 4 bands), the car 10.5 ms (1.35M triangles, 10k caches, 6 bands), on a GTX 980"
+
 
 def car_way() -> Any:
     """Six bands, as the paper's; all bounces; half of setting 1's surfels, as most of the surface is the car's, which sends none on."""

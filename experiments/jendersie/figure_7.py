@@ -20,6 +20,8 @@ TEXELS, CELLS = 128, 12  # 13,785 caches in the paper
 ALL: dict[str, Any] = {"bounces": None, "emitters": "links"}
 WAYS = {"rays to surfels, as the paper's": 0, "rays to what is near as well": 512}
 
+PAPER_PRINTS = "195 frames a second on a GTX 980 with 40k surfels, 13,785 caches and many bounces; the truth took 62k samples a pixel"
+
 
 def way(near_rays: int) -> Any:
     """Setting 1 with all bounces; emitters through links, as the paper's. Bodies are lit by the grid, the room by the map."""

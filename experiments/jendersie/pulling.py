@@ -15,6 +15,8 @@ from experiments.shared.panels import table_figure
 KINDS = ("flux", "radiosity")
 CELLS = tuple((name, kind) for name in SETTINGS for kind in KINDS)
 
+PAPER_PRINTS = "pulling flux is 1 to 2.5 ms faster than pulling radiosity, on a GTX 980"
+
 
 def studies() -> Sequence[ir.Study]:
     return [study("flux and radiosity", [composition(name, link__pull=kind) for name, kind in CELLS], size=SMALL, repeats=15)]

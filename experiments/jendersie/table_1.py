@@ -16,6 +16,8 @@ from experiments.shared.scenes import sunny_phong_sponza, sunny_sponza
 REFERENCE = ir.Reference(noise=2e-3, max_spp=512)
 LAMPS = 8
 
+PAPER_PRINTS = "no numbers: stars for glossy light and speed, and words for lights and objects"
+
 
 def ways() -> dict[str, Any]:
     """The paper's rows, as far as there are methods: cones for cones, one cascade for its several; for its other caches, ours."""

@@ -23,6 +23,8 @@ CACHES, ON_MAP = 10585, 8281  # the paper's of Sponza: 2,304 of them stand in th
 SURFELS = {"setting 1": 128_000, "setting 2": 32_000}  # the paper's thousands are no powers of two
 PARTS = ("surfels and tree", "links", "caches", "indices and copies")
 
+PAPER_PRINTS = "in the table's columns, by its formulas; its totals in the title"
+
 
 def studies() -> Sequence[ir.Study]:
     """As in table 2, so that SH links are measured once."""

@@ -25,6 +25,8 @@ STAGES = {
 }
 STAGGER = 0.2  # of a bar's place: numbers stand high and low in turn, as neighbours are narrower than they
 
+PAPER_PRINTS = "in the chart's last bar: milliseconds on a GTX 670"
+
 
 def studies() -> Sequence[ir.Study]:
     return everywhere("times of the steps", [caching(shadow=ir.VoxelCones())], size=SIZE, repeats=5)

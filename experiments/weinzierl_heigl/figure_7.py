@@ -26,6 +26,8 @@ CHANGES = {
 STAGES = ("cluster_lights", "shade_lights", "shade")
 BRIGHT = 1.5  # times the truth: what is seen as a bright spot
 
+PAPER_PRINTS = "256 point lights 13 ms, 128 area lights 8 ms and 5 ms to cluster, on a Radeon HD 6850"
+
 
 def studies() -> Sequence[ir.Study]:
     """Neither casts shadows, so what both approximate is very many lights without shadows, each a disk of its own texels."""

@@ -22,6 +22,8 @@ COMPLETE = "complete"
 # Milliseconds on a Radeon HD 6850.
 PAPER = {"64 with PCSS": (5.0, 11.0, 10.0, 26.0), "512 simple": (5.0, 30.0, 17.0, 52.0)}
 
+PAPER_PRINTS = "in the table: milliseconds on a Radeon HD 6850"
+
 
 def studies() -> Sequence[ir.Study]:
     """Timed at the paper's size; how near to the truth at a smaller one, where the truth's noise does not hide the difference."""

@@ -18,7 +18,7 @@ import interreflect as ir
 from interreflect.stability.composition_failures import COMPOSITION
 
 FOLDER = Path(__file__).parents[2] / "experiments"
-FILES = sorted(path for path in FOLDER.glob("*.py") if path.stem not in ("__init__", "figures"))
+FILES = sorted(path for path in FOLDER.glob("*.py") if path.stem not in ("__init__", "figures", "gallery"))
 EXPERIMENTS = [path for path in FILES if "\nstudy = " in path.read_text()]
 
 

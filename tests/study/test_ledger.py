@@ -1,18 +1,26 @@
 """The ledger: what follows from checks, and what each claim makes of records that were made up to hold or not."""
 
+import csv
 import dataclasses
+import io
+import re
+from pathlib import Path
 
 import numpy as np
 import pytest
 from experiments.ledger import book, freed, rehfeld
 from experiments.ledger.claim import ANSWERED, DOES_NOT_HOLD, HOLDS, IN_PART, NOT_YET, Check, Claim, above, below, judge, told
+from experiments.ledger.page import as_csv, as_html, as_markdown, as_text
 from experiments.rehfeld import resolution, surface_coverage
+from experiments.shared.keep import NONE, NotRecorded, recorded
 from experiments.shared.panels import picture
 
 import interreflect as ir
 from interreflect.study.records import Record, Records
 
 CLAIM = Claim("X1", "figure 1", "A claim.")
+CLAIM_W = Claim("W8", "figure 1", "A claim.")
+CLAIMS = Path(__file__).parents[3] / "shared" / "CLAIMS.md"
 
 
 def record(number, stages=(), metrics=(), knobs=(), size=(4, 4), **more):
@@ -69,9 +77,20 @@ def test_a_claim_without_checks_is_an_error_and_not_a_number_meets_no_bound():
 def test_every_claim_of_the_papers_is_in_the_book_once():
     names = [claim.name for claim in book.CLAIMS]
     assert len(set(names)) == len(names)
-    expected = {"R": 15, "J": 17, "W": 7, "F": 13}
+    expected = {"R": 15, "J": 17, "W": 7, "F": 12 + 5}  # F11 is five open questions
     assert {letter: sum(name[0] == letter for name in names) for letter in expected} == expected
     assert all(bool(claim.missing) != bool(claim.measure is not Claim.measure) for claim in book.CLAIMS)
+
+
+@pytest.mark.skipif(not CLAIMS.exists(), reason="the list of claims does not lie beside the repository")
+def test_every_claim_and_every_open_question_of_the_list_is_in_the_book():
+    listed = re.findall(r"^\| ([RJWF]\d+) \| [^|]+ \| (.+) \|$", CLAIMS.read_text(), re.MULTILINE)
+    assert len(listed) > 40
+    for name, text in listed:
+        of_name = [claim for claim in book.CLAIMS if re.fullmatch(rf"{name}[a-z]?", claim.name)]
+        questions = text.split(": ", 1)[1].split(";") if text.startswith("Open questions") else [text]
+        assert len(of_name) == len(questions), name
+        assert len(questions) == 1 or all(claim.text.startswith("Open question: ") for claim in of_name)
 
 
 def test_a_claim_whose_part_is_missing_says_so_without_running_anything():
@@ -89,10 +108,41 @@ def test_a_claim_whose_scene_is_not_here_says_so():
 
 def test_the_book_is_a_table_with_a_row_per_claim():
     verdicts = [judge(CLAIM, [below("less | more", 1.0, 2.0)]), book.verdict(dataclasses.replace(CLAIM, missing="that"))]
-    lines = book.as_markdown(verdicts).splitlines()
+    lines = as_markdown(verdicts).splitlines()
     rows = [line for line in lines if line.startswith("| **X1**")]
     assert len(rows) == 2 and "*holds*" in rows[0] and "\\|" in rows[0] and NOT_YET in rows[1]
-    assert "HOLDS" in book.as_text(verdicts[0]) and "yes: " in book.as_text(verdicts[0])
+    assert "HOLDS" in as_text(verdicts[0]) and "yes: " in as_text(verdicts[0])
+
+
+def test_the_table_and_the_page_say_what_the_book_says_and_which_command_measures_it():
+    checked = judge(CLAIM_W, [below("a < b, surely", 1.0, 2.0), above("c", 1.0, 2.0), told("d", "3")])
+    verdicts = [checked, book.verdict(dataclasses.replace(CLAIM_W, name="W9", missing="that"))]
+    rows = list(csv.DictReader(io.StringIO(as_csv(verdicts))))
+    assert list(rows[0]) == ["claim", "paper", "place", "text", "verdict", "check", "measured", "holds", "reason", "command"]
+    assert [(row["claim"], row["check"], row["holds"]) for row in rows] == [
+        ("W8", "a < b, surely", "yes"), ("W8", "c", "no"), ("W8", "d", ""), ("W9", "", ""),
+    ]  # fmt: skip
+    assert rows[0]["command"] == "./run figures ledger/W8" and "Weinzierl-Heigl" in rows[0]["paper"]
+    assert rows[3]["reason"] == "missing: that"
+    page = as_html(verdicts)
+    assert "a &lt; b, surely" in page and "./run figures ledger/W9" in page and "1 holds in part, 1 not yet testable" in page
+
+
+def test_a_ledger_of_what_is_recorded_measures_nothing_and_says_what_is_lacking(tmp_path, monkeypatch):
+    method = ir.methods.ConstantAmbient()
+    study = ir.Study(name="X: a box", scenes=[ir.scenes.cornell_box()], methods=[method], size=(8, 6), reference=NONE, repeats=1)
+    claim = dataclasses.replace(CLAIM_W, studies=lambda: [study], measure=lambda found: [told("cells", str(len(found)))])
+    monkeypatch.setattr(book, "CLAIMS", (claim,))
+    page = book.write(tmp_path, measuring=False)
+    assert "no records yet: ./run figures ledger/W8 (X: a box: never measured here)" in page.read_text()
+    assert not (tmp_path / "records").exists()
+    book.write(tmp_path)
+    kept = {path: path.stat().st_mtime_ns for path in (tmp_path / "records").rglob("*.json")}
+    assert "answered" in book.write(tmp_path, measuring=False).read_text()
+    assert (tmp_path / "ledger.csv").read_text().count("cells") == 1 and "*answered*" in (tmp_path / "ledger.md").read_text()
+    assert {path: path.stat().st_mtime_ns for path in (tmp_path / "records").rglob("*.json")} == kept
+    with pytest.raises(NotRecorded, match="1 of 2 cells are not measured"):
+        recorded(dataclasses.replace(study, methods=[method, method.replace({"ambient": 0.5})]), tmp_path)
 
 
 @pytest.mark.parametrize(("times", "word"), [((1.3, 1.2, 1.1), HOLDS), ((0.7, 0.8, 0.9), DOES_NOT_HOLD), ((0.7, 1.3, 1.3), IN_PART)])

@@ -1,11 +1,13 @@
 """Every figure and table of a paper is a file with studies and a chart of their records; each runs at a small size on a stand-in scene."""
 
 import dataclasses
+from html import escape
 
 import matplotlib.figure
 import numpy as np
 import pytest
-from experiments.figures import LEDGER, PAPERS, draw, figures_of, main, make, module_of, names, questions
+from experiments.figures import LEDGER, PAPERS, draw, figures_of, main, make, module_of, names, questions, why_missing
+from experiments.gallery import write as write_gallery
 from experiments.ledger.book import CLAIMS
 from experiments.rehfeld import sites
 from experiments.shared import scenes
@@ -153,3 +155,32 @@ def test_a_figure_whose_scene_is_not_here_is_left_out_and_said_so(monkeypatch, c
     monkeypatch.setattr(scenes, "load", absent)
     make("freed/figure_5_1", tmp_path)
     assert "left out" in capsys.readouterr().out and not list(tmp_path.glob("**/*.png"))
+
+
+def test_the_gallery_shows_every_figure_or_says_why_not(tmp_path):
+    (tmp_path / "freed").mkdir()
+    (tmp_path / "freed" / "table_5_1.png").touch()
+    figures = {paper: figures_of(paper) for paper in PAPERS}
+    page = write_gallery(tmp_path, figures, lambda name: f"nobody measured {name}").read_text()
+    assert page.count("<figure ") == len(FIGURES) and all(f"<code>./run figures {name}</code>" in page for name in FIGURES)
+    assert page.count('<img src="freed/table_5_1.png"') == page.count("<img ") == 1
+    assert "No picture: nobody measured freed/table_5_2" in page and "nobody measured freed/table_5_1" not in page
+    assert page.index('id="freed/figure_4_9"') < page.index('id="freed/figure_4_10"') < page.index('id="freed/table_5_1"')
+    for name in FIGURES:
+        assert "/table_" not in name or f"The paper prints: {escape(module_of(name).PAPER_PRINTS)}." in page
+
+
+def test_printed_numbers_stand_beside_ours_in_freeds_tables(stand_in, tmp_path):
+    for name, printed in (("freed/table_5_1", ("16.31", "0.55")), ("freed/table_5_2", ("2.35", "0.53"))):
+        experiment = module_of(name)
+        shown = experiment.chart(*(records_of(smaller(study), tmp_path) for study in experiment.studies()))
+        texts = {cell.get_text().get_text() for cell in shown.axes[0].tables[0].get_celld().values()}
+        assert texts >= set(printed) and any("GTX 970" in text for text in texts)
+
+
+def test_what_is_only_recorded_is_not_measured(tmp_path, monkeypatch, stand_in, capsys):
+    make("freed/figure_4_3", tmp_path, measuring=False)
+    assert "freed/figure_4_3: left out, Freed: conservative rasterization: never measured here" in capsys.readouterr().out
+    assert not (tmp_path / "records").exists() and why_missing("freed/figure_4_3", tmp_path).endswith("never measured here")
+    with pytest.raises(SystemExit):
+        main(["--recorded", "how_many_cones"])
