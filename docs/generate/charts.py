@@ -12,13 +12,14 @@ from docs.generate.measured import Curve
 from interreflect.charts.style import COLOURS, MARKERS, add_legend, dress, new_figure, theme_of
 
 MOST = 4  # kinds of work in one chart: those that change most
+NO_WORK = ("stray texels", "covered pixels", "uncovered pixels", "reused caches", "surface points")  # counts of what came out
 
 
 def changing(curve: Curve) -> dict[str, np.ndarray[Any, Any]]:
     """Kinds of work that the knob changes by more than a twentieth, relative to the default, and the time."""
     index = curve.values.index(curve.default)
     relative = {name: np.array(amount) / amount[index] for name, amount in curve.work.items() if amount[index] > 0}
-    moved = {name: amount for name, amount in relative.items() if amount.min() >= 0 and np.ptp(amount) > 0.05}
+    moved = {name: amount for name, amount in relative.items() if np.ptp(amount) > 0.05 and not name.endswith(NO_WORK)}
     times = {name: amount for name, amount in moved.items() if name.endswith("time")}
     counts = sorted((name for name in moved if name not in times), key=lambda name: -np.ptp(moved[name]))[: MOST - len(times)]
     return {name: moved[name] for name in counts} | times

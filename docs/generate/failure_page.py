@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import interreflect as ir
-from docs.generate.technique_pages import cell, stage_link
+from docs.generate.technique_pages import cell, number, stage_link
 
 HEAD = """# Failures
 
@@ -27,6 +27,6 @@ def failure_page() -> str:
     for row in ir.stability.failures:
         unit = f" ({row.unit})" if row.unit else ""
         whose = ", ".join(stage_link(stage).replace("../", "") for stage in row.stages) or "every stage"
-        cells = (row.name, row.knob + unit, f"{row.easy:.3g} to {row.hard:.3g}", row.quantity, f"{row.tolerance:g}: {row.reason}")
+        cells = (row.name, row.knob + unit, f"{number(row.easy)} to {number(row.hard)}", row.quantity, f"{row.tolerance:g}: {row.reason}")
         rows.append("| " + " | ".join(cell(text) for text in cells) + f" | {whose} |")
     return HEAD + "\n".join(rows) + "\n"

@@ -18,12 +18,14 @@ from interreflect.methods.knobs import is_technique
 Box = tuple[str, str]  # stage, technique or ""
 COLUMNS = 5
 SMALL = (48, 36)
+COARSE = {"grid.resolution": 16, "place_surfels.surfels": 512, "place_caches.texels": 16}  # stages and their order stay the same
 FILL = {"light": ("#e8f1fa", "#f3f3f3", "#fdf1e0"), "dark": ("#1d3550", "#2a2d33", "#4a3413")}  # chosen; fixed; built once
 
 
 def boxes(setting: Setting, precomputed: Sequence[str]) -> tuple[list[Box], list[Box], list[Box]]:
     """What is built once; the stages of a frame as its profile lists them; techniques that no stage of their own runs."""
-    method = setting.method
+    knobs = setting.method.knobs()
+    method = setting.method.replace({path: value for path, value in COARSE.items() if path in knobs})
     frame = method.prepare(setting.scene).render(setting.camera, size=SMALL)
     chosen = {name: type(value).__name__ for name, value in method.exact_knobs().items() if is_technique(value) and name in _core.stages}
     once = [(name, chosen[name]) for name in precomputed]

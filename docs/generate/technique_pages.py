@@ -115,7 +115,7 @@ def breaks(technique: Any) -> str:
     table = ["| Failure | Swept | Tolerance | Breaks at |", "|---|---|---|---|"]
     for row in aimed:
         point = rows.get(row.name, "not measured")
-        swept = f"{row.knob}{', ' + row.unit if row.unit else ''}, {row.easy:.3g} to {row.hard:.3g}"
+        swept = f"{row.knob}{', ' + row.unit if row.unit else ''}, {number(row.easy)} to {number(row.hard)}"
         table.append(f"| [{row.name}](../failures.md) | {cell(swept)} | {row.tolerance:g} | {point} |")
     return "\n".join(table) + f"\n\n{measured.breaks_made()}"
 
@@ -128,6 +128,10 @@ def knob_table(params: Any, prefix: str = "") -> str:
         cells = (f"`{prefix}{knob['name']}`", f"`{knob['default']!r}`", knob["unit"], knob_range(knob), knob["doc"])
         rows.append("| " + " | ".join(cell(text) for text in cells) + " |")
     return "\n".join(rows)
+
+
+def number(value: float) -> str:
+    return f"{value:,.0f}" if abs(value) >= 1000 else f"{value:.3g}"
 
 
 def cell(text: str) -> str:
