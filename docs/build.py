@@ -18,6 +18,7 @@ from typing import Any
 import interreflect as ir
 from docs.generate import charts, measured, method_pages, pictures, pipelines
 from docs.generate.failure_page import failure_page
+from docs.generate.figure_page import figure_page
 from docs.generate.notes import notes_of
 from docs.generate.settings import method_names, setting_of, techniques
 from docs.generate.technique_pages import stage_page, technique_page
@@ -68,6 +69,7 @@ def assemble(source: Source, names: dict[str, Any]) -> None:
     for name in method_names():
         source.put(f"methods/{name}.md", method_pages.method_page(name))
     source.put("failures.md", failure_page())
+    source.put("figures.md", figure_page())
     source.put("stages.md", listing("Stages and techniques", "stages", list(_core.stages)))
     source.put("methods.md", listing("Methods", "methods", method_names()))
     draw(source, names)

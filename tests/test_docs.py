@@ -10,6 +10,7 @@ pytest.importorskip("sphinx", reason="needs the extra `docs`")
 
 from docs.generate import measured
 from docs.generate.failure_page import failure_page
+from docs.generate.figure_page import figure_page
 from docs.generate.method_pages import method_page
 from docs.generate.notes import FOLDER, KEYS, notes_of
 from docs.generate.settings import main_knob, method_names, techniques
@@ -78,3 +79,11 @@ def test_the_architecture_names_every_room_and_folder_as_they_are():
     assert folders == package
     outside = {"experiments", "bench", "notebooks", "tools", "docs", "tests"}
     assert all((ROOT / name).is_dir() and f"`{name}`" in text for name in outside)
+
+
+def test_the_page_of_figures_names_every_experiment_and_says_what_it_is():
+    from experiments.figures import HERE
+
+    rows = {command: told for told, command in re.findall(r"^\| (.+) \| `\./run figures (\S+)` \|$", figure_page(), re.MULTILINE)}
+    drawn = {path.stem for path in HERE.glob("*.py") if "\ndef chart(" in path.read_text()}
+    assert drawn <= set(rows) and len(rows) > 60 and all(len(told) > 20 for told in rows.values())
