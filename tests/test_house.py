@@ -3,9 +3,12 @@
 import re
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 
 import pytest
+
+from interreflect import _core
 
 ROOT = Path(__file__).parents[1]
 CORE = ROOT / "cpp" / "interreflect"
@@ -51,6 +54,32 @@ def test_import_loads_nothing_heavy(heavy):
     """What makes `import interreflect` and `--help` quick; their times stand in the benchmarks."""
     code = f"import sys, interreflect, interreflect.cli; sys.exit({heavy!r} in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+def test_there_is_one_version():
+    with (ROOT / "pyproject.toml").open("rb") as settings:
+        version = tomllib.load(settings)["project"]["version"]
+    built = re.search(r"^project\(interreflect VERSION (\S+)", (ROOT / "CMakeLists.txt").read_text(), re.MULTILINE)
+    cited = re.search(r"^version: (\S+)$", (ROOT / "CITATION.cff").read_text(), re.MULTILINE)
+    newest = re.search(r"^## (\S+)", (ROOT / "CHANGELOG.md").read_text(), re.MULTILINE)
+    assert {found and found[1] for found in (built, cited, newest)} == {version}
+    assert _core.build_info["version"] == version
+
+
+def test_the_citation_names_the_papers():
+    yaml = pytest.importorskip("yaml", reason="needs a reader of YAML, which the extra `distributed` brings")
+    citation = yaml.safe_load((ROOT / "CITATION.cff").read_text())
+    assert citation["cff-version"] == "1.2.0" and {"message", "title", "authors", "license"} <= citation.keys()
+    assert {paper["authors"][0]["family-names"] for paper in citation["references"]} == {"Freed", "Jendersie", "Rehfeld", "Weinzierl-Heigl"}
+    assert all({"type", "title", "year"} <= paper.keys() for paper in citation["references"])
+
+
+@pytest.mark.parametrize("document", ["README.md", "CONTRIBUTING.md", "THIRD_PARTY.md"])
+def test_links_of_the_documents_lead_somewhere(document):
+    text = (ROOT / document).read_text()
+    linked = [target for target in re.findall(r"\]\(([^)#]+)\)", text) if "://" not in target]
+    assert linked or document == "THIRD_PARTY.md"
+    assert [target for target in (*linked, *re.findall(r"`(licenses/[^`]+\.txt)`", text)) if not (ROOT / target).exists()] == []
 
 
 def test_the_stub_describes_the_module():

@@ -43,13 +43,6 @@ void for_each_pixel(const Tile& tile, int width, const Visit& visit) {
             for (int y = y0; y < std::min(y0 + block, tile.y1); ++y)
                 for (int x = x0; x < std::min(x0 + block, tile.x1); ++x) visit(static_cast<std::size_t>(y) * width + x);
 }
-/// The same for those that hit a surface.
-template <class Visit>
-void for_each_hit(const GBuffer& g, const Tile& tile, const Visit& visit) {
-    for_each_pixel(tile, g.width, [&](std::size_t pixel) {
-        if (g.hit(pixel)) visit(pixel);
-    });
-}
 
 inline std::size_t tile_count(const GBuffer& g, int side = tile_side) {
     const auto along = [side](int pixels) { return static_cast<std::size_t>((pixels + side - 1) / side); };

@@ -13,8 +13,6 @@ if TYPE_CHECKING:
 
     from interreflect.study.ladder import Ladder
 
-MARKS = "error (filled: needed; dots: fewer to more samples)"
-
 
 def staircase(found: Ladder, dark: bool = False) -> Figure:
     """A column per rung: its error with interval (filled where it is needed), every setting's, and exact light's; times above."""

@@ -30,11 +30,6 @@ FIXED = (
     "width", "height", "threads", "repeats", "truth_spp", "scene_hash", "processor", "compiler", "commit", "warnings", "key",
 )  # fmt: skip
 MAY_BE_NAN = ("metrics", "knobs", "limits")  # and every number of a record itself; stages only where nothing was timed
-# Columns (beside `stage.<name>.milliseconds`) that differ when the same cell is measured again.
-OF_THE_MOMENT = (
-    "milliseconds", "milliseconds_low", "milliseconds_high", "milliseconds_p95", "contended", "others_share", "precompute_milliseconds",
-    "peak_memory_bytes", "calibration", "limit_milliseconds", "limit_ratio", "repeats",
-)  # fmt: skip
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
