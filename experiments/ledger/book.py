@@ -8,7 +8,7 @@ from pathlib import Path
 import interreflect as ir
 from experiments.ledger import freed, jendersie, rehfeld, rehfeld_caches, weinzierl_heigl
 from experiments.ledger.claim import NOT_YET, Claim, Verdict, judge
-from experiments.ledger.page import as_csv, as_html, as_markdown, as_text, command_of
+from experiments.ledger.page import NOTES, RECORDED, as_csv, as_html, as_markdown, as_text, command_of
 from experiments.shared.keep import FOLDER, NotRecorded, recorded, records_of
 
 CLAIMS: tuple[Claim, ...] = (
@@ -44,6 +44,8 @@ def write(folder: Path = FOLDER, names: Sequence[str] = (), measuring: bool = Tr
     page = folder / "ledger.html"
     if not names:
         folder.mkdir(parents=True, exist_ok=True)
-        for path, write_down in ((page, as_html), (folder / "ledger.md", as_markdown), (folder / "ledger.csv", as_csv)):
-            path.write_text(write_down(verdicts))
+        notes = NOTES if measuring else (*NOTES, RECORDED)
+        page.write_text(as_html(verdicts, notes))
+        (folder / "ledger.md").write_text(as_markdown(verdicts, notes))
+        (folder / "ledger.csv").write_text(as_csv(verdicts))
     return page

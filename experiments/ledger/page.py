@@ -20,6 +20,7 @@ NOTES = (
     "Freed's normal mapping is left out: our scenes have no normal maps.",
     "A visual claim's metric and bound stand beside its checks in experiments/ledger and were written down before the first run.",
 )
+RECORDED = "Nothing was measured for this page: it rests on records of earlier runs, whichever commit made them."
 COLUMNS = ("claim", "paper", "place", "text", "verdict", "check", "measured", "holds", "reason", "command")
 STYLE = (
     "body { font: 15px/1.45 sans-serif; margin: 2em auto; max-width: 76em; padding: 0 1em; color: #222 } "
@@ -30,7 +31,7 @@ STYLE = (
     ".answered { background: #dfe9f6 } .not-yet-testable { background: #eee }"
 )
 
-WIDTHS = "".join(f'<col style="width: {share}%">' for share in (29, 20, 36, 15))
+WIDTHS = "".join(f'<col style="width: {share}%">' for share in (27, 20, 34, 19))
 
 
 def paper_of(name: str) -> str:
@@ -53,12 +54,12 @@ def as_text(one: Verdict) -> str:
     return "\n".join([head, *numbers, *([f"       {one.reason}"] if one.reason else [])])
 
 
-def as_markdown(verdicts: Sequence[Verdict]) -> str:
+def as_markdown(verdicts: Sequence[Verdict], notes: Sequence[str] = NOTES) -> str:
     """A table: claim, verdict, our numbers, reason, command."""
     lines = [
         "# Reproduction ledger",
         "",
-        *(f"- {note}" for note in NOTES),
+        *(f"- {note}" for note in notes),
         "",
         "| claim | where | verdict | our numbers | reason | command |",
         "|---|---|---|---|---|---|",
@@ -86,14 +87,14 @@ def as_csv(verdicts: Sequence[Verdict]) -> str:
     return text.getvalue()
 
 
-def as_html(verdicts: Sequence[Verdict]) -> str:
+def as_html(verdicts: Sequence[Verdict], notes: Sequence[str] = NOTES) -> str:
     """A page: a table per paper, and how many claims have which verdict."""
     counts = {word: sum(one.word == word for one in verdicts) for word in dict.fromkeys(one.word for one in verdicts)}
     parts = [
         f'<!doctype html><html lang="en"><meta charset="utf-8"><title>Reproduction ledger</title><style>{STYLE}</style>',
         "<h1>Reproduction ledger</h1>",
         "<p>" + ", ".join(f"{count} {escape(word)}" for word, count in counts.items()) + ".</p>",
-        "<ul>" + "".join(f"<li>{escape(note)}" for note in NOTES) + "</ul>",
+        "<ul>" + "".join(f"<li>{escape(note)}" for note in notes) + "</ul>",
     ]
     for letter, paper in PAPERS.items():
         rows = [_row(one) for one in verdicts if one.claim.name[0] == letter]

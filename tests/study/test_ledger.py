@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from experiments.ledger import book, freed, rehfeld
 from experiments.ledger.claim import ANSWERED, DOES_NOT_HOLD, HOLDS, IN_PART, NOT_YET, Check, Claim, above, below, judge, told
-from experiments.ledger.page import as_csv, as_html, as_markdown, as_text
+from experiments.ledger.page import RECORDED, as_csv, as_html, as_markdown, as_text
 from experiments.rehfeld import resolution, surface_coverage
 from experiments.shared.keep import NONE, NotRecorded, recorded
 from experiments.shared.panels import picture
@@ -135,8 +135,8 @@ def test_a_ledger_of_what_is_recorded_measures_nothing_and_says_what_is_lacking(
     monkeypatch.setattr(book, "CLAIMS", (claim,))
     page = book.write(tmp_path, measuring=False)
     assert "no records yet: ./run figures ledger/W8 (X: a box: never measured here)" in page.read_text()
-    assert not (tmp_path / "records").exists()
-    book.write(tmp_path)
+    assert not (tmp_path / "records").exists() and RECORDED in page.read_text()
+    assert RECORDED not in book.write(tmp_path).read_text()
     kept = {path: path.stat().st_mtime_ns for path in (tmp_path / "records").rglob("*.json")}
     assert "answered" in book.write(tmp_path, measuring=False).read_text()
     assert (tmp_path / "ledger.csv").read_text().count("cells") == 1 and "*answered*" in (tmp_path / "ledger.md").read_text()
