@@ -20,7 +20,7 @@ from typing import Any
 import numpy as np
 
 import interreflect as ir
-from docs.generate.measured import BREAKS, FOLDER
+from docs.generate.measured import BISECTIONS, BREAKS, FOLDER, SWEEP
 from docs.generate.notes import notes_of
 from docs.generate.settings import Setting, main_knob, setting_of, techniques
 from interreflect.stability.crossing import STUDENT
@@ -29,7 +29,6 @@ SIZE = (160, 120)
 SEEDS = (0, 1, 2)
 TRUTH = ir.Reference(noise=1e-3, max_spp=4096)
 TIMED = 5  # frames whose least time counts, interleaved over the values
-SWEEP, BISECTIONS = 4, 1  # settings of a failure
 Row = dict[str, Any]
 
 

@@ -39,15 +39,20 @@ def technique_page(technique: Any) -> str:
 
 def picture(name: str, setting: Setting) -> str:
     caption = (
-        f"Left: `{setting.scene_name}` by {method_link(setting.method)} with `{setting.path}={name}()`{told(setting)}. "
+        f"Left: `{setting.scene_name}` by {method_link(setting.method)} with `{setting.path}={name}()`{told(name, setting)}. "
         f"Middle: the path-traced truth. Right: where their {SHOWN[setting.part]} differs, from a relative squared error of 0.0001 (black) "
         f"to 1 (bright). {DRAWN}"
     )
     return f":::{{figure}} ../pictures/{name}.png\n:alt: {name}, the truth, and where they differ\n\n{caption}\n:::"
 
 
-def told(setting: Setting) -> str:
-    return "" if setting.frames == 1 else f", the last of {setting.frames} frames"
+def told(name: str, setting: Setting) -> str:
+    """Knobs that are not the method's usual ones, and frames before the one that is shown."""
+    usual = type(setting.method)().replace({setting.path: getattr(ir, name)()}).knobs()
+    other = {path: value for path, value in setting.method.knobs().items() if usual.get(path) != value and path != setting.path}
+    heads = {path: value for path, value in other.items() if path.rpartition(".")[0] not in other or path in usual}
+    words = ", ".join(f"`{path}={value}`" for path, value in heads.items())
+    return (f", {words}" if words else "") + ("" if setting.frames == 1 else f", the last of {setting.frames} frames")
 
 
 def code(technique: Any, setting: Setting) -> str:
@@ -150,8 +155,7 @@ def stage_page(stage: str) -> str:
     hidden = "\n".join(f"../techniques/{cls.__name__}" for cls in described["techniques"] if cls.stages[0] == stage)
     parts = [
         f"# {stage}",
-        described["doc"],
-        " ".join(notes.sentences),
+        " ".join(notes.sentences) or described["doc"],
         "\n".join(["| Technique | What it does | Source |", "|---|---|---|", *rows]),
         f"The knob is `{field}`, of {users}." if users else "",
         "" if exact else f"It has no exact counterpart: {notes.head.get('bypass', 'it is a choice without a truth of its own')}.",

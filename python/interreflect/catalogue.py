@@ -208,8 +208,8 @@ def knob_range(param: Mapping[str, Any]) -> str:
     low, high = param.get("minimum"), param.get("maximum")
     if low is None and high is None:
         return ""
-    left = "(-inf" if low is None else f"{'(' if param.get('open_minimum') else '['}{low:g}"
-    right = "inf)" if high is None else f"{high:g}{')' if param.get('open_maximum') else ']'}"
+    left = "(-inf" if low is None else f"{'(' if param.get('open_minimum') else '['}{low:.10g}"
+    right = "inf)" if high is None else f"{high:.10g}{')' if param.get('open_maximum') else ']'}"
     return f"{left}, {right}"
 
 
