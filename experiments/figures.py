@@ -2,8 +2,8 @@
 
 A name is a question (a file of this folder with one `study` and one `chart(records)`, or a `measure(folder)` whose findings its chart
 draws), a paper (`freed`, `jendersie`, `rehfeld`, `weinzierl-heigl`: a folder, all of its files), one file of it (`freed/table_5_1`:
-`studies()` and `chart(*records)`), `ledger` (or one claim: `ledger/F1`), or `gallery`: the page of every figure that was drawn, which is
-written after a paper as well. Without a name: every question. Pictures go to results/figures. What needs a scene that is not here is left
+`studies()` and `chart(*records)`), `ledger` (or one claim: `ledger/F1`), `findings` (what questions answer that no paper does, on one page),
+or `gallery`: the page of every figure that was drawn, which is written after a paper as well. Without a name: every question. Pictures go to results/figures. What needs a scene that is not here is left
 out and said so. --recorded: nothing is measured; what papers and ledger lack of records is named.
 """
 
@@ -20,7 +20,7 @@ from experiments.shared.keep import FOLDER, NotRecorded, recorded, records_of
 
 HERE = Path(__file__).parent
 PAPERS = ("freed", "jendersie", "rehfeld", "weinzierl-heigl")
-LEDGER, GALLERY = "ledger", "gallery"
+LEDGER, GALLERY, FINDINGS = "ledger", "gallery", "findings"
 WITHOUT_A_QUESTION = ("__init__", "figures", "gallery")
 
 
@@ -39,7 +39,7 @@ def figures_of(paper: str) -> list[str]:
 
 
 def names() -> list[str]:
-    return [*questions(), *PAPERS, *(name for paper in PAPERS for name in figures_of(paper)), LEDGER, GALLERY]
+    return [*questions(), *PAPERS, *(name for paper in PAPERS for name in figures_of(paper)), LEDGER, GALLERY, FINDINGS]
 
 
 def is_claim(name: str) -> bool:
@@ -80,6 +80,11 @@ def make(name: str, folder: Path, measuring: bool = True) -> None:
         if name == LEDGER:
             print(f"{name}: {page}")
         return
+    if name == FINDINGS:
+        from experiments.shared.findings import write as write_findings
+
+        print(f"{name}: {write_findings(folder)}")
+        return
     for one in figures_of(name) if name in PAPERS else [] if name == GALLERY else [name]:
         try:
             print(f"{one}: {' '.join(map(str, draw(one, folder, measuring)))}", flush=True)
@@ -113,7 +118,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     if given.recorded and not given.experiment:
         parser.error("--recorded: name papers, files of them, the ledger or the gallery; questions measure by themselves")
     for name in given.experiment:
-        if given.recorded and name in questions():
+        if given.recorded and name in (*questions(), FINDINGS):
             parser.error(f"--recorded: {name} is a question, which measures by itself")
         if name not in names() and not is_claim(name):
             parser.error(f"there is no experiment {name!r}; there are {', '.join(names())}")

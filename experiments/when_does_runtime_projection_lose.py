@@ -7,6 +7,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 import interreflect as ir
+from experiments.shared.ratios import ratio
 from interreflect.charts.style import COLOURS, add_legend, dress, new_figure
 
 composition = ir.methods.IlluminanceComposition(
@@ -63,3 +64,15 @@ def chart(records: ir.Records) -> Figure:
         dress(axes, dark=False)
     add_legend(figure, panels, dark=False)
     return figure
+
+
+def told(records: ir.Records) -> str:
+    """The finding in words: time and error of projection over links in spherical harmonics, with intervals over scenes and links."""
+    found, lines = ratios(records), []
+    for bands, rows in found.groupby(lambda key: key[2], sort=False):
+        time, error = (ratio(list(rows[column])) for column in ("time", "error"))
+        lines.append(
+            f"{bands} bands: {time} of the time to light caches ({time.verdict}), {error.mean:.3f} of the error, "
+            f"{rows['bytes'].iloc[0]:.2f} of the bytes"
+        )
+    return "\n".join(lines)

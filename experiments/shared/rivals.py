@@ -1,4 +1,4 @@
-"""Four ways to one bounce of indirect light at settings from milliseconds to seconds, and the scenes that they meet on."""
+"""Four ways to one bounce of indirect light at settings from milliseconds to seconds."""
 
 from __future__ import annotations
 
@@ -11,25 +11,6 @@ from experiments.shared.scenes import sponza, sponza_by_a_spot, veach_ajar
 from interreflect.study.ladder import Mechanism, mechanisms
 
 PAPERS = ("64 with PCSS", "512 simple", "256 points", "128 area lights")
-
-
-@dataclass(frozen=True)
-class Place:
-    """A scene, the camera that sees it, and the most samples a pixel of its truth: as many as a minute allows."""
-
-    make: Callable[[], ir.Scene]
-    camera: str
-    spp: int
-
-
-# FileNotFoundError of `make` says where a scene was looked for.
-PLACES: Mapping[str, Place] = {
-    "Cornell box by a spot": Place(lambda: ir.scenes.cornell_box(light="spot"), "front", 2048),
-    "atrium": Place(ir.scenes.atrium, "court", 1024),
-    "Sponza by a spot": Place(sponza_by_a_spot, "nave", 1024),
-    "Sponza by a sun": Place(sponza, "nave", 1024),
-    "Veach's door ajar": Place(veach_ajar, "room", 1024),
-}
 
 
 BLACK = "direct light alone"
@@ -56,13 +37,3 @@ def rivals() -> dict[str, Any]:
         **{f"the paper's {name}": ir.methods.VirtualAreaLights.preset(name).replace(sky=SMOOTH_SKY) for name in PAPERS},
         **{f"denoised paths, {n} a pixel": ir.methods.PathTracingDenoised(bounces=1, spp=n) for n in (1, 2, 4, 16)},
     }
-
-
-def rungs() -> list[Mechanism]:
-    """The usual mechanisms, with caches and virtual lights as two more ways to one diffuse bounce."""
-    usual = mechanisms()
-    after = [rung.name for rung in usual].index("one diffuse bounce") + 1
-    caches = ir.sweep(ir.methods.ClusteredRadianceCaching(), {"distribute.caches": [512, 2048]})
-    lights = ir.sweep(ir.methods.VirtualAreaLights(sky=SMOOTH_SKY), {"sample_lights.lights": [32, 128, 512]})
-    ours = [Mechanism("one bounce from caches", caches), Mechanism("one bounce from virtual lights", lights)]
-    return [*usual[:after], *ours, *usual[after:]]

@@ -49,7 +49,7 @@ def find(path: str | os.PathLike[str]) -> str:
     """The file that `path` names; FileNotFoundError with the paths tried."""
     name = os.fspath(path)
     tried = []
-    for candidate in [name, *(os.path.join(folder, name) for folder in _folders() if not os.path.isabs(name))]:
+    for candidate in [name, *(os.path.join(folder, name) for folder in scene_folders() if not os.path.isabs(name))]:
         absolute = os.path.abspath(candidate)
         if absolute in tried:
             continue
@@ -59,7 +59,8 @@ def find(path: str | os.PathLike[str]) -> str:
     raise FileNotFoundError(f"no scene {name!r}; tried {', '.join(tried)}")
 
 
-def _folders() -> list[str]:
+def scene_folders() -> list[str]:
+    """Where scenes are looked for by name, first to last; not all need exist."""
     project = Path(__file__).resolve().parents[3]
     given = os.environ.get("INTERREFLECT_SCENES")
     return [*([given] if given else []), os.path.join("..", "shared", "scenes"), str(project.parent / "shared" / "scenes")]

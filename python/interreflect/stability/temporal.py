@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -184,25 +184,35 @@ def motion(
     threads: int | None = None,
     reference: Reference = SAMPLES,
     pop: float = POP,
+    bounces: int | Literal["method"] | None = "method",
 ) -> Played:
-    """Plays a motion with a method, history passed on, and compares every frame with its own truth of the method's bounces.
+    """Plays a motion with a method, history passed on, and compares every frame with its own truth.
 
-    reference: how good each frame's truth must be; truths are kept in the cache folder. pop: share of the mean radiance.
+    reference: how good each frame's truth must be; truths are kept in the cache folder. pop: share of the mean radiance. bounces:
+    indirect bounces of the truth; None: all; "method": the method's own.
     ValueError where the scene lacks what moves, and for a frame with numbers that are not finite.
     """
-    return compare(list(method.prepare(scene, threads).play(motion, size, seed)), method, scene, motion, size, reference, pop)
+    return compare(list(method.prepare(scene, threads).play(motion, size, seed)), method, scene, motion, size, reference, pop, bounces)
 
 
 def compare(
-    frames: Sequence[Any], method: Any, scene: Scene, motion: Motion, size: tuple[int, int], wanted: Reference = SAMPLES, pop: float = POP
+    frames: Sequence[Any],
+    method: Any,
+    scene: Scene,
+    motion: Motion,
+    size: tuple[int, int],
+    wanted: Reference = SAMPLES,
+    pop: float = POP,
+    bounces: int | Literal["method"] | None = "method",
 ) -> Played:
     """Frames of a motion that were rendered already, beside the truth. NotFinite, a ValueError, for a picture with such numbers."""
     for k, frame in enumerate(frames):
         if wrong := int(frame.image.size - np.isfinite(frame.image).sum()):
             raise NotFinite(f"frame {k} holds {wrong} numbers that are not finite", frame.image)
     views = [motion.at(scene, k) for k in range(motion.frames)]
+    carried = method.bounces if bounces == "method" else bounces
     with bar(views, desc="truths", unit="frame", leave=False) as progress:
-        truths = [frame_truth(moved, camera, size, method.bounces, wanted) for moved, camera in progress]
+        truths = [frame_truth(moved, camera, size, carried, wanted) for moved, camera in progress]
     seen = [surfaces(moved, camera, size) for moved, camera in views]
     scale = float(np.mean([truth.image.mean(dtype=np.float64) for truth in truths]))
     errors, own = [], []
