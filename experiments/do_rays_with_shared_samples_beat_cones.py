@@ -60,7 +60,6 @@ def told(records: ir.Records) -> str:
     """The finding in words, with intervals over scenes."""
     lines = []
     for (kind, count), rows in against_cones(records).groupby(["kind", "cones"], sort=False):
-        error = ratio(list(rows["ratio"])) if len(rows) > 1 else None
-        words = f"{error} of their error ({error.verdict})" if error else f"{rows['ratio'].iloc[0]:.2f} of their error on one scene"
-        lines.append(f"{kind}, in the time of {count:.0f} cones: {words}")
+        error = ratio(list(rows["ratio"]))
+        lines.append(f"{kind}, in the time of {count:.0f} cones: {error} of their error ({error.verdict})")
     return "\n".join(lines)

@@ -2,9 +2,10 @@
 
 A name is a question (a file of this folder with one `study` and one `chart(records)`, or a `measure(folder)` whose findings its chart
 draws), a paper (`freed`, `jendersie`, `rehfeld`, `weinzierl-heigl`: a folder, all of its files), one file of it (`freed/table_5_1`:
-`studies()` and `chart(*records)`), `ledger` (or one claim: `ledger/F1`), `findings` (what questions answer that no paper does, on one page),
-or `gallery`: the page of every figure that was drawn, which is written after a paper as well. Without a name: every question. Pictures go to results/figures. What needs a scene that is not here is left
-out and said so. --recorded: nothing is measured; what papers and ledger lack of records is named.
+`studies()` and `chart(*records)`), `ledger` (or one claim: `ledger/F1`), `findings` (what questions answer that no paper does, on one
+page), or `gallery`: the page of every figure that was drawn, which is written after a paper as well. Without a name: every question.
+Pictures go to results/figures. What needs a scene that is not here is left out and said so. --recorded: nothing is measured; what papers
+and ledger lack of records is named.
 """
 
 from __future__ import annotations

@@ -24,19 +24,24 @@ class Ratio:
     views: int
 
     def __str__(self) -> str:
+        if self.views == 1:
+            return f"{self.mean:.2f} in one view"
         return f"{self.mean:.2f} [{self.low:.2f}, {self.high:.2f}] over {self.views} views"
 
     @property
     def verdict(self) -> str:
         """Below 1, above 1, or not told apart from it."""
+        if self.views == 1:
+            return "no interval"
         return "less" if self.high < 1 else "more" if self.low > 1 else "no different within the interval"
 
 
 def ratio(values: Sequence[float]) -> Ratio:
     """Of positive finite ratios. ValueError for others: a view that cannot be compared is to be left out by name, not silently."""
-    logs = np.log(np.asarray(values, float))
-    if not np.isfinite(logs).all():
+    given = np.asarray(values, float)
+    if not (np.isfinite(given) & (given > 0)).all():
         raise ValueError(f"ratios must be positive and finite, got {list(values)}")
+    logs = np.log(given)
     low, high = mean_interval(logs)
     return Ratio(float(np.exp(logs.mean())), float(np.exp(low)), float(np.exp(high)), len(logs))
 

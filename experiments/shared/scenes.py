@@ -26,11 +26,6 @@ def sponza_by_a_spot() -> ir.Scene:
     return sponza().replace(lights=[spot], name="Sponza by a spot")
 
 
-def veach_ajar() -> ir.Scene:
-    """A room that is lit through a door by light on the wall behind it."""
-    return load("veach_ajar/scene.toml")
-
-
 def sunny_sponza() -> ir.Scene:
     """Sponza without its sky: for what is about the voxels that a lamp hits."""
     return without_sky(sponza())

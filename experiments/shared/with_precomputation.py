@@ -8,7 +8,6 @@ import interreflect as ir
 from experiments.shared.rivals import rivals
 
 SURFELS = {1024: (16, 4), 4096: (64, 6), 16384: (128, 8), 32768: (254, 12)}  # links, and cells of the grid along a side
-WITHOUT = ("cones", "caches", "lights, a ray each", "lights, 4 rays each", "PCSS", "simple")  # of the rivals, what their names hold
 COMPOSITION = "illuminance-composition"
 
 
@@ -21,8 +20,7 @@ def methods() -> list[Any]:
         )
         for surfels, (links, cells) in SURFELS.items() for bands in (2, 3, 4)
     ]  # fmt: skip
-    theirs = [way for name, way in rivals().items() if "the paper" not in name and any(word in name for word in WITHOUT)]
-    return [*ours, *theirs]
+    return [*ours, *rivals()]
 
 
 def scenes() -> list[ir.Scene]:

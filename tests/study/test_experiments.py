@@ -2,20 +2,35 @@
 
 import dataclasses
 import runpy
+from functools import partial
 from pathlib import Path
 
+import numpy as np
 import pandas as pd
 import pytest
-from experiments import head_to_head
+from experiments import (
+    do_rays_with_shared_samples_beat_cones,
+    do_warps_pay,
+    head_to_head,
+    what_does_each_scene_need,
+    when_is_tessellation_worth_it,
+    which_stage_costs_most_error,
+)
 from experiments import where_do_caches_break as caches
 from experiments import where_do_virtual_lights_break as virtual
 from experiments import where_do_voxels_break as where
 from experiments import where_does_illuminance_composition_break as composition
 from experiments.figures import draw
+from experiments.shared.contenders import contenders
+from experiments.shared.moving import in_motion
+from experiments.shared.places import Place, moved, places
+from experiments.shared.ratios import ratio
+from experiments.shared.winners import ranked, tied, winners_in_motion
 from matplotlib.figure import Figure
 
 import interreflect as ir
 from interreflect.stability.composition_failures import COMPOSITION
+from interreflect.study.ladder import ladder, mechanisms
 
 FOLDER = Path(__file__).parents[2] / "experiments"
 FILES = sorted(path for path in FOLDER.glob("*.py") if path.stem not in ("__init__", "figures", "gallery"))
@@ -61,7 +76,13 @@ def test_an_experiment_is_a_question_whose_records_make_its_chart(path, tmp_path
 
 def test_what_is_no_study_measures_by_itself():
     alone = {
+        "do_rays_with_shared_samples_beat_cones",
+        "do_warps_pay",
         "head_to_head",
+        "what_does_each_scene_need",
+        "when_is_tessellation_worth_it",
+        "where_does_every_method_break",
+        "which_stage_costs_most_error",
         "where_do_caches_break",
         "where_do_virtual_lights_break",
         "where_do_voxels_break",
@@ -160,42 +181,122 @@ def test_break_points_of_illuminance_composition_name_failures_that_exist():
     assert {row.name for row in COMPOSITION} <= named <= {row.name for row in ir.stability.failures}
 
 
+KEPT = ("direct light alone", "16 lights, a ray each", "cones, grid 32, interleaved", "denoised paths, 1 a pixel")
+
+
 @pytest.fixture(scope="module")
 def contest(tmp_path_factory):
     """Three ways and black on the Cornell box, few pixels."""
     folder = tmp_path_factory.mktemp("contest")
-    kept = ("direct light alone", "16 lights, a ray each", "64 lights, a ray each", "denoised paths, 1 a pixel")
-    few = {name: head_to_head.rivals()[name] for name in kept}
-    few["cones"] = ir.methods.VoxelConeTracing(grid=ir.Grid(resolution=16))
-    name = "Cornell box by a spot"
-    place = dataclasses.replace(head_to_head.PLACES[name], spp=16)
+    truth = ir.Reference(noise=1e-2, max_spp=16)
+    smaller = {"SIZE": (48, 28), "SEEDS": (0, 1), "FRAMES": 3, "TRUTH": {1: truth, None: truth}, "TRUTH_OF_A_FRAME": truth}
+    few = {light: {name: way for name, way in contenders(light).items() if name in KEPT} for light in (1, None)}
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("INTERREFLECT_CACHE", str(folder / "cache"))
-        for what, value in {"rivals": lambda: few, "SIZE": (48, 28), "SEEDS": (0, 1), "PLACES": {name: place}}.items():
+        for what, value in (smaller | {"contenders": few.get}).items():
             patch.setattr(head_to_head, what, value)
-        yield folder, few, head_to_head.measure(folder, [name])
+        yield folder, head_to_head.measure(folder, ["cornell box by a spot"])
 
 
-def test_who_wins_a_head_to_head_is_told_by_both_errors_with_black_among_them(contest):
-    folder, few, found = contest
-    (records,) = found.values()
-    table = head_to_head.winners(records)
-    assert set(table["setting"]) <= set(few) and set(table["by"]) == {"relmse", "flip"}
-    black = table[table["method"] == "constant-ambient"]
-    assert len(black) and set(black["setting"]) == {"direct light alone"} and not black["beats_black"].any()
-    for (_, by), ranked in table.groupby(["budget", "by"]):
-        assert ranked[by].is_monotonic_increasing and list(ranked["place"]) == list(range(1, len(ranked) + 1))
-        assert (ranked["milliseconds"] <= ranked["budget"]).all()
-    kept = folder / "cornell_box_by_a_spot"
-    assert all((kept / name).exists() for name in ("winners.csv", "speed_accuracy.png", "pictures.png"))
-    assert all(axes.has_data() for axes in head_to_head.chart(found).axes)
-    assert "direct light alone relMSE" in head_to_head.told("box", records)
+def test_who_wins_a_head_to_head_is_told_still_and_moving_by_every_error_with_black_among_them(contest):
+    folder, found = contest
+    assert set(found["setting"]) <= set(KEPT) and "direct light alone" in set(found["setting"])
+    assert set(found["light"]) == {"one bounce", "all bounces"} and set(found["kind"]) == {"still", "moving"}
+    assert set(found[found["kind"] == "moving"]["by"]) == {"relmse", "flip", "temporal"}
+    for (_, _, budget, _), rows in found.groupby(["light", "kind", "budget", "by"]):
+        assert rows["error"].is_monotonic_increasing and list(rows["place"]) == list(range(1, len(rows) + 1))
+        assert rows["method"].is_unique and (rows["milliseconds"] <= budget).all()
+    assert "direct light alone" not in set(found[found["by"] == "temporal"]["setting"])
+    assert "How often each method is first" in (folder / "winners.md").read_text()
+    kept = folder / "cornell_box_by_a_spot" / "all_bounces"
+    assert all((kept / name).exists() for name in ("page.html", "moving.csv", "speed_accuracy.png"))
+    head_to_head.chart(found).canvas.draw()
 
 
-def test_a_head_to_head_leaves_out_a_scene_that_is_not_here(monkeypatch, capsys, tmp_path):
-    def absent():
-        raise FileNotFoundError("tried here and there")
+def test_what_was_played_in_motion_is_not_played_again(contest, monkeypatch):
+    folder, found = contest
+    monkeypatch.setattr("experiments.shared.moving._played", lambda *_: pytest.fail("played again"))
+    again = head_to_head.measure(folder, ["cornell box by a spot"])
+    pd.testing.assert_frame_equal(again, found)
 
-    monkeypatch.setattr(head_to_head, "PLACES", {"far": head_to_head.Place(absent, "court", 2)})
-    assert head_to_head.measure(tmp_path, ["far"]) == {}
-    assert "far: left out" in capsys.readouterr().out
+
+def test_a_way_that_fails_in_motion_is_a_row_with_its_reason(tmp_path):
+    scene = ir.scenes.cornell_box(light="spot")
+    bad = {"none": ir.methods.PathTracing(spp=1)}
+    motion = ir.Motion(frames=2, light=7, light_turn=1)
+    found = in_motion(bad, scene, motion, (8, 6), 1, ir.Reference(max_spp=2), tmp_path)
+    assert "Motion.light must name" in found["failure"].iloc[0]
+    assert winners_in_motion(found.assign(milliseconds=1.0, relmse=0.0, flip=0.0, temporal=0.0)).empty
+
+
+def test_a_lead_that_intervals_cover_is_within_noise_and_a_tie():
+    rows = [("a", 0.10, 0.01), ("b", 0.11, 0.01), ("c", 0.3, 0.01)]
+    table = pd.DataFrame(
+        [
+            {"setting": m, "method": m, "milliseconds": 10.0, "milliseconds_low": 9.0, "milliseconds_high": 11.0}
+            | {"flip": e, "flip_low": e - r, "flip_high": e + r}
+            for m, e, r in rows
+        ]
+    )
+    found = ranked(table, ("flip",), {})
+    first = found[found["budget"] == 50]
+    assert list(first["note"]) == ["within noise", "", ""] and list(tied(first)["method"]) == ["a", "b"]
+    assert first["times_best"].iloc[2] == pytest.approx(3.0)
+
+
+def test_every_manifest_of_the_scenes_folder_is_a_place(tmp_path, monkeypatch):
+    for name in ("one/scene.toml", "two/lit.toml"):
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_text("")
+    monkeypatch.setenv("INTERREFLECT_SCENES", str(tmp_path))
+    assert list(places()) == ["cornell box by a spot", "atrium", "one", "two/lit"]
+
+
+def test_a_place_in_motion_moves_its_camera_sideways_and_a_light():
+    scene = ir.scenes.cornell_box(light="spot")
+    (before, first), (after, second) = (moved(scene, 2).at(scene, k) for k in range(2))
+    step = np.subtract(second.position, first.position)
+    assert np.linalg.norm(step) > 0 and abs(step @ np.subtract(first.target, first.position)) < 1e-6
+    assert before.lights != after.lights
+
+
+TOLD = (do_warps_pay, when_is_tessellation_worth_it, do_rays_with_shared_samples_beat_cones)
+
+
+@pytest.mark.parametrize("question", TOLD, ids=lambda question: question.__name__.rpartition(".")[2])
+def test_a_finding_is_drawn_and_told_with_intervals(question, tmp_path, monkeypatch):
+    monkeypatch.setenv("INTERREFLECT_CACHE", str(tmp_path / "cache"))
+    boxes = [ir.scenes.cornell_box(light=light) for light in ("spot", "area", "point")]
+    study = dataclasses.replace(smaller(question.study_of(boxes)), scenes=boxes)
+    records = ir.run(study, tmp_path / "r")
+    assert set(records.table["status"]) == {"ok"}
+    found = question.table(records, boxes) if hasattr(question, "table") else records
+    question.chart(found).canvas.draw()
+    words = question.told(found)
+    assert "[" in words and "over 3 views" in words and "nan" not in words
+
+
+def test_findings_of_stages_and_mechanisms_are_drawn_and_told(tmp_path, monkeypatch):
+    monkeypatch.setenv("INTERREFLECT_CACHE", str(tmp_path / "cache"))
+    for question in (which_stage_costs_most_error, what_does_each_scene_need):
+        monkeypatch.setattr(question, "SIZE", (24, 16))
+        monkeypatch.setattr(question, "REFERENCE", ir.Reference(max_spp=16))
+    monkeypatch.setattr(which_stage_costs_most_error, "SAMPLES", 4)
+    monkeypatch.setattr(ir, "ladder", lambda *given, **named: ladder(*given, **named, rungs=mechanisms()[:3]))
+    boxes = [Place(light, partial(ir.scenes.cornell_box, light=light)) for light in ("spot", "point")]
+    coarse = {"cones": ir.methods.VoxelConeTracing(grid=ir.Grid(resolution=8))}
+    shares = which_stage_costs_most_error.measure(tmp_path / "shares", boxes, coarse)
+    assert {"march", "rest", "interaction"} <= set(shares["stage"])
+    assert "cones, over 2 scenes: " in which_stage_costs_most_error.told(shares)
+    needs = what_does_each_scene_need.measure(tmp_path / "needs", boxes)
+    assert "constant ambient: needed on" in what_does_each_scene_need.told(needs)
+    for figure in (which_stage_costs_most_error.chart(shares), what_does_each_scene_need.chart(needs)):
+        figure.canvas.draw()
+
+
+def test_a_ratio_over_views_is_a_geometric_mean_with_its_interval():
+    found = ratio([0.5, 2.0, 1.0])
+    assert found.mean == pytest.approx(1.0) and found.low < 0.5 < 2.0 < found.high and found.verdict.startswith("no different")
+    assert ratio([0.5, 0.51, 0.49]).verdict == "less"
+    with pytest.raises(ValueError, match="positive and finite"):
+        ratio([1.0, -1.0])
